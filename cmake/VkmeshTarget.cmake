@@ -1,0 +1,18 @@
+# vkmesh_target(TARGET): what every target of the project is compiled with.
+function(vkmesh_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion)
+  # Exactness: no fused multiply-add that the source does not spell (docs/exactness.md).
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  if(VKMESH_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(VKMESH_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${VKMESH_SANITIZE} -fno-omit-frame-pointer)
+    if(VKMESH_SANITIZE MATCHES undefined)
+      target_compile_options(${target} PRIVATE -fno-sanitize-recover=undefined)
+    endif()
+    target_link_options(${target} PUBLIC -fsanitize=${VKMESH_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,38 @@
+// Named attributes of points, corners or faces.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vkmesh {
+
+/// The values of a channel, in the scalar type the file gave them.
+using ChannelValues =
+    std::variant<std::vector<float>, std::vector<double>, std::vector<std::int8_t>, std::vector<std::uint8_t>,
+                 std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<std::int32_t>,
+                 std::vector<std::uint32_t>>;
+
+/// A named attribute: `components` scalars for each element, one element after another.
+/// Names with a meaning everywhere: "normal" (3 components), "uv" (2), "color" (3 or 4; 0..255 for uint8,
+/// 0..1 for float), "quality" (1). Any other name is carried as it is.
+struct Channel {
+  std::string name;
+  unsigned components = 1;
+  ChannelValues values;
+
+  /// Scalars held, elements × components.
+  [[nodiscard]] std::size_t scalar_count() const {
+    return std::visit([](const auto& v) { return v.size(); }, values);
+  }
+};
+
+/// The channel of that name, or nullptr. O(channels).
+[[nodiscard]] const Channel* find_channel(const std::vector<Channel>& channels, const std::string& name);
+
+/// Replaces the channel of the same name, or appends.
+void set_channel(std::vector<Channel>& channels, Channel channel);
+
+}  // namespace vkmesh

@@ -1,0 +1,31 @@
+// Polygons that carry their own corners, as STL files do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <vkmesh/channel.h>
+#include <vkmesh/indexed_face_set.h>
+#include <vkmesh/result.h>
+#include <vkmesh/vec.h>
+
+namespace vkmesh {
+
+/// A polygon soup: no notion of whether two corners are one point. `weld` gives it one.
+struct PolygonSoup {
+  std::vector<Vec3> corners;                ///< Position of every corner, face after face.
+  std::vector<std::uint32_t> face_offsets;  ///< As in IndexedFaceSet: empty means triangles.
+  std::vector<Channel> face_channels;       ///< One element per face (STL: "normal", "attribute").
+
+  [[nodiscard]] std::size_t face_count() const {
+    return face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
+  }
+};
+
+/// Identifies corners whose coordinates are equal (0 equals -0) and numbers the points in order of first appearance.
+/// Faces and their channels keep their order. O(n log n) for n corners.
+/// Errors: kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
+[[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
+
+}  // namespace vkmesh

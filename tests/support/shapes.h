@@ -1,0 +1,38 @@
+// Small meshes with known answers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/indexed_face_set.h>
+
+namespace vkmesh::test {
+
+IndexedFaceSet tetrahedron();
+/// Unit cube [0, 1]³: 8 points, 12 triangles.
+IndexedFaceSet cube();
+/// The same with six quads.
+IndexedFaceSet quad_cube();
+/// Unit sphere from the icosahedron, each triangle split 1:4 `level` times: 10·4^level + 2 points, 20·4^level faces.
+IndexedFaceSet icosphere(unsigned level, float radius = 1.0f);
+/// Closed torus of rings × sides quads, each cut into two triangles.
+IndexedFaceSet torus(std::uint32_t rings, std::uint32_t sides, float major = 1.0f, float minor = 0.4f);
+/// Flat grid in the plane z = 0 over [0, nx] × [0, ny]: (nx+1)(ny+1) points, 2 nx ny triangles, one boundary loop.
+IndexedFaceSet grid(std::uint32_t nx, std::uint32_t ny);
+/// A band of n quads cut into triangles, closed with half a turn: manifold, not orientable, one boundary loop.
+IndexedFaceSet mobius(std::uint32_t n);
+/// Open tube of rings × sides quads cut into triangles: two boundary loops.
+IndexedFaceSet cylinder(std::uint32_t rings, std::uint32_t sides);
+/// Two tetrahedra that share one point: a non-manifold vertex.
+IndexedFaceSet bow_tie();
+/// Three triangles on one edge.
+IndexedFaceSet fin();
+
+/// Moves every coordinate by a pseudo-random amount of at most `amplitude`; the same seed gives the same mesh.
+void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed);
+
+/// consolidate() of a mesh that is known to be manifold; fails the test otherwise.
+HalfEdgeMesh half_edges(const IndexedFaceSet& mesh);
+
+}  // namespace vkmesh::test
