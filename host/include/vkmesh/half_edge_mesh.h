@@ -15,8 +15,9 @@ namespace vkmesh {
 
 class HalfEdgeMesh;
 
-/// Walks the half-edges of a face in cyclic order, or those leaving a vertex counter-clockwise (seen from outside),
-/// on a boundary vertex from the one that starts its fan. `Step` advances, `Value` maps to what the range yields.
+/// Walks the half-edges of a face in cyclic order, or those leaving a vertex counter-clockwise (seen from
+/// outside), on a boundary vertex from the one that starts its fan. `Step` advances, `Value` maps to what the
+/// range yields.
 template <class Step, class Value>
 class CirculatorRange {
  public:
@@ -25,7 +26,8 @@ class CirculatorRange {
     using iterator_category = std::forward_iterator_tag;
     using iterator_concept = std::forward_iterator_tag;
     using difference_type = std::ptrdiff_t;
-    using value_type = decltype(std::declval<const Value&>()(std::declval<const HalfEdgeMesh&>(), HalfEdgeId{}));
+    using value_type =
+        decltype(std::declval<const Value&>()(std::declval<const HalfEdgeMesh&>(), HalfEdgeId{}));
     using reference = value_type;
     using pointer = void;
 
@@ -69,16 +71,18 @@ struct YieldTwinFace;
 
 /// Connectivity only; positions and attributes stand in arrays of their own, indexed by the handles.
 ///
-/// The half-edges of a face stand side by side in cyclic order, so half-edge 3f + i starts at corner i of triangle f,
-/// and `next`, `previous` and `face` are arithmetic. Memory: for triangles 8 bytes a half-edge and 4 a vertex (about
-/// 52 bytes a vertex on a closed mesh); polygons add 4 bytes a half-edge and 4 a face.
+/// The half-edges of a face stand side by side in cyclic order, so half-edge 3f + i starts at corner i of
+/// triangle f, and `next`, `previous` and `face` are arithmetic. Memory: for triangles 8 bytes a half-edge
+/// and 4 a vertex (about 52 bytes a vertex on a closed mesh); polygons add 4 bytes a half-edge and 4 a face.
 class HalfEdgeMesh {
  public:
   HalfEdgeMesh() = default;
 
-  /// Adopts arrays built elsewhere, without judging them: `validate` does. `face_offsets` empty means triangles.
+  /// Adopts arrays built elsewhere, without judging them: `validate` does. `face_offsets` empty means
+  /// triangles.
   static HalfEdgeMesh from_arrays(std::vector<std::uint32_t> origin, std::vector<std::uint32_t> twin,
-                                  std::vector<std::uint32_t> leading, std::vector<std::uint32_t> face_offsets = {});
+                                  std::vector<std::uint32_t> leading,
+                                  std::vector<std::uint32_t> face_offsets = {});
 
   [[nodiscard]] std::size_t vertex_count() const { return leading_.size(); }
   [[nodiscard]] std::size_t half_edge_count() const { return origin_.size(); }
@@ -98,13 +102,17 @@ class HalfEdgeMesh {
   [[nodiscard]] HalfEdgeId twin(HalfEdgeId h) const { return HalfEdgeId(twin_[h.index]); }
   [[nodiscard]] HalfEdgeId next(HalfEdgeId h) const;
   [[nodiscard]] HalfEdgeId previous(HalfEdgeId h) const;
-  [[nodiscard]] FaceId face(HalfEdgeId h) const { return FaceId(is_triangles() ? h.index / 3 : face_[h.index]); }
-  [[nodiscard]] HalfEdgeId first(FaceId f) const { return HalfEdgeId(is_triangles() ? 3 * f.index : face_offsets_[f.index]); }
+  [[nodiscard]] FaceId face(HalfEdgeId h) const {
+    return FaceId(is_triangles() ? h.index / 3 : face_[h.index]);
+  }
+  [[nodiscard]] HalfEdgeId first(FaceId f) const {
+    return HalfEdgeId(is_triangles() ? 3 * f.index : face_offsets_[f.index]);
+  }
   [[nodiscard]] unsigned face_size(FaceId f) const {
     return is_triangles() ? 3 : face_offsets_[f.index + 1] - face_offsets_[f.index];
   }
-  /// A half-edge that leaves v: on a boundary vertex the one that starts its fan (it has no twin); invalid when v is
-  /// isolated.
+  /// A half-edge that leaves v: on a boundary vertex the one that starts its fan (it has no twin); invalid
+  /// when v is isolated.
   [[nodiscard]] HalfEdgeId leading(VertexId v) const { return HalfEdgeId(leading_[v.index]); }
   [[nodiscard]] bool is_boundary(HalfEdgeId h) const { return twin_[h.index] == kInvalid; }
   [[nodiscard]] bool is_boundary(VertexId v) const {
@@ -124,11 +132,12 @@ class HalfEdgeMesh {
   /// One for each edge of f; invalid across the boundary.
   [[nodiscard]] CirculatorRange<detail::StepNext, detail::YieldTwinFace> faces_around(FaceId f) const;
   /// The half-edges that leave v. On a boundary vertex there is one fewer than neighbours.
-  [[nodiscard]] CirculatorRange<detail::StepAroundVertex, detail::YieldHalfEdge> half_edges_around(VertexId v) const;
+  [[nodiscard]] CirculatorRange<detail::StepAroundVertex, detail::YieldHalfEdge> half_edges_around(
+      VertexId v) const;
   [[nodiscard]] CirculatorRange<detail::StepAroundVertex, detail::YieldFace> faces_around(VertexId v) const;
 
-  /// Calls f(VertexId) for each neighbour of v, counter-clockwise; on a boundary vertex from one boundary edge to the
-  /// other.
+  /// Calls f(VertexId) for each neighbour of v, counter-clockwise; on a boundary vertex from one boundary
+  /// edge to the other.
   template <class F>
   void for_each_neighbour(VertexId v, F&& f) const {
     const HalfEdgeId start = leading(v);
@@ -161,10 +170,10 @@ class HalfEdgeMesh {
   std::vector<std::uint32_t> face_;
 };
 
-/// Checks every invariant of the structure and names the first that is broken, with its element: sizes, index ranges,
-/// twins that are mutual and opposite, no edge used twice in one direction, faces without repeated vertices, leading
-/// half-edges that start their fans, and one fan for each vertex. O(half-edges).
-/// Errors: kInternal with the invariant's name.
+/// Checks every invariant of the structure and names the first that is broken, with its element: sizes, index
+/// ranges, twins that are mutual and opposite, no edge used twice in one direction, faces without repeated
+/// vertices, leading half-edges that start their fans, and one fan for each vertex. O(half-edges). Errors:
+/// kInternal with the invariant's name.
 [[nodiscard]] Result<void> validate(const HalfEdgeMesh& mesh);
 
 inline HalfEdgeId HalfEdgeMesh::next(HalfEdgeId h) const {
@@ -202,7 +211,8 @@ struct YieldTwinFace {
 };
 }  // namespace detail
 
-inline CirculatorRange<detail::StepNext, detail::YieldHalfEdge> HalfEdgeMesh::half_edges_around(FaceId f) const {
+inline CirculatorRange<detail::StepNext, detail::YieldHalfEdge> HalfEdgeMesh::half_edges_around(
+    FaceId f) const {
   return {*this, first(f)};
 }
 inline CirculatorRange<detail::StepNext, detail::YieldOrigin> HalfEdgeMesh::vertices_around(FaceId f) const {
@@ -215,7 +225,8 @@ inline CirculatorRange<detail::StepAroundVertex, detail::YieldHalfEdge> HalfEdge
     VertexId v) const {
   return {*this, leading(v)};
 }
-inline CirculatorRange<detail::StepAroundVertex, detail::YieldFace> HalfEdgeMesh::faces_around(VertexId v) const {
+inline CirculatorRange<detail::StepAroundVertex, detail::YieldFace> HalfEdgeMesh::faces_around(
+    VertexId v) const {
   return {*this, leading(v)};
 }
 

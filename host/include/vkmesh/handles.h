@@ -8,7 +8,8 @@
 
 namespace vkmesh {
 
-/// The index that stands for "none": the twin of a boundary half-edge, the leading half-edge of an isolated vertex.
+/// The index that stands for "none": the twin of a boundary half-edge, the leading half-edge of an isolated
+/// vertex.
 inline constexpr std::uint32_t kInvalid = 0xffffffffu;
 
 /// An index that knows what it counts. 4 bytes; holds no pointer to a mesh.

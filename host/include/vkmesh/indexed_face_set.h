@@ -11,8 +11,8 @@
 
 namespace vkmesh {
 
-/// An indexed face set (Akenine-Möller & Haines, ch. 12): may hold anything a file can hold — non-manifold edges,
-/// isolated points, degenerate faces. `consolidate` judges it. A point cloud is one without faces.
+/// An indexed face set (Akenine-Möller & Haines, ch. 12): may hold anything a file can hold — non-manifold
+/// edges, isolated points, degenerate faces. `consolidate` judges it. A point cloud is one without faces.
 struct IndexedFaceSet {
   std::vector<Vec3> points;
   /// Point index of every corner, face after face. Readers guarantee that each is < points.size().

@@ -11,14 +11,15 @@
 
 namespace vkmesh {
 
-/// A. K. Cline and R. L. Renka, "A storage-efficient method for construction of a Thiessen triangulation" (1984): the
-/// neighbours of every node in counter-clockwise order, packed. What smoothing gathers over. Memory: 4 bytes a
-/// directed edge, 4 bytes and a bit a vertex.
+/// A. K. Cline and R. L. Renka, "A storage-efficient method for construction of a Thiessen triangulation"
+/// (1984): the neighbours of every node in counter-clockwise order, packed. What smoothing gathers over.
+/// Memory: 4 bytes a directed edge, 4 bytes and a bit a vertex.
 struct NodeNeighbours {
-  std::vector<std::uint32_t> offsets;  ///< vertices + 1; the neighbours of v are [offsets[v], offsets[v + 1]).
+  std::vector<std::uint32_t>
+      offsets;  ///< vertices + 1; the neighbours of v are [offsets[v], offsets[v + 1]).
   std::vector<std::uint32_t> ids;
-  /// Bit v (word v / 32, bit v % 32): v lies on the boundary, its first and last neighbours are joined to it by
-  /// boundary edges, and there is no face between them.
+  /// Bit v (word v / 32, bit v % 32): v lies on the boundary, its first and last neighbours are joined to it
+  /// by boundary edges, and there is no face between them.
   std::vector<std::uint32_t> boundary_bits;
 
   [[nodiscard]] std::size_t vertex_count() const { return offsets.empty() ? 0 : offsets.size() - 1; }
@@ -34,9 +35,8 @@ struct NodeNeighbours {
 /// Errors: kOutOfMemory.
 [[nodiscard]] Result<NodeNeighbours> node_neighbours(const HalfEdgeMesh& mesh);
 
-/// The triangle mesh of which these are the neighbour lists; triangles by their smallest vertex, then in its cyclic
-/// order. O(edges).
-/// Errors: kUnsuitable when the lists are those of no triangle mesh.
+/// The triangle mesh of which these are the neighbour lists; triangles by their smallest vertex, then in its
+/// cyclic order. O(edges). Errors: kUnsuitable when the lists are those of no triangle mesh.
 [[nodiscard]] Result<HalfEdgeMesh> to_half_edge_mesh(const NodeNeighbours& neighbours);
 
 }  // namespace vkmesh

@@ -23,9 +23,9 @@ struct PolygonSoup {
   }
 };
 
-/// Identifies corners whose coordinates are equal (0 equals -0) and numbers the points in order of first appearance.
-/// Faces and their channels keep their order. O(n log n) for n corners.
-/// Errors: kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
+/// Identifies corners whose coordinates are equal (0 equals -0) and numbers the points in order of first
+/// appearance. Faces and their channels keep their order. O(n log n) for n corners. Errors: kOutOfMemory;
+/// kUnsuitable for more than 2^32 - 2 corners.
 [[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
 
 }  // namespace vkmesh

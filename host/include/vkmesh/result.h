@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
+
+#include <tl/expected.hpp>
 
 namespace vkmesh {
 
@@ -52,15 +53,15 @@ using Result = tl::expected<T, Error>;
 #define VKMESH_JOIN(a, b) VKMESH_JOIN_INNER(a, b)
 
 /// `VKMESH_TRY(auto x, f());` binds the value of f(), or returns its error from the enclosing function.
-#define VKMESH_TRY(declaration, expression)                                                        \
-  auto VKMESH_JOIN(vkmesh_result_, __LINE__) = (expression);                                       \
-  if (!VKMESH_JOIN(vkmesh_result_, __LINE__))                                                      \
+#define VKMESH_TRY(declaration, expression)                                                             \
+  auto VKMESH_JOIN(vkmesh_result_, __LINE__) = (expression);                                            \
+  if (!VKMESH_JOIN(vkmesh_result_, __LINE__))                                                           \
     return ::tl::unexpected<::vkmesh::Error>(std::move(VKMESH_JOIN(vkmesh_result_, __LINE__)).error()); \
   declaration = *std::move(VKMESH_JOIN(vkmesh_result_, __LINE__))
 
 /// `VKMESH_CHECK(f());` returns the error of a Result<void>, if there is one.
-#define VKMESH_CHECK(expression)                                                            \
-  do {                                                                                      \
-    auto vkmesh_status = (expression);                                                      \
+#define VKMESH_CHECK(expression)                                                                    \
+  do {                                                                                              \
+    auto vkmesh_status = (expression);                                                              \
     if (!vkmesh_status) return ::tl::unexpected<::vkmesh::Error>(std::move(vkmesh_status).error()); \
   } while (false)

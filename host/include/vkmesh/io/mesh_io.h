@@ -37,11 +37,11 @@ struct ReadOptions {
   Progress progress;
 };
 
-/// Reads a file of any known format. The content decides the format, the extension only where the content leaves it
-/// open (OBJ). gzip is recognised by its magic bytes. "-" reads standard input. O(bytes); no allocation that the
-/// bytes present do not justify.
-/// Errors: kUnreadable (missing, a directory, malformed, an index out of range, a coordinate that is not finite; with
-/// file and line or byte), kOutOfMemory, kInterrupted.
+/// Reads a file of any known format. The content decides the format, the extension only where the content
+/// leaves it open (OBJ). gzip is recognised by its magic bytes. "-" reads standard input. O(bytes); no
+/// allocation that the bytes present do not justify. Errors: kUnreadable (missing, a directory, malformed, an
+/// index out of range, a coordinate that is not finite; with file and line or byte), kOutOfMemory,
+/// kInterrupted.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from memory; `name` stands for the path in errors and its extension serves as the hint.
@@ -64,13 +64,16 @@ struct WriteOptions {
 /// Errors: kUsage for an extension that no writer serves (the message lists those that exist).
 [[nodiscard]] Result<WriteOptions> write_options_for(const std::filesystem::path& path);
 
-/// Writes the mesh. The file appears whole or not at all: it is written beside its place, then renamed. "-" writes to
-/// standard output. What the format cannot hold (STL has no attributes) is left out and named in the returned notes.
-/// Errors: kNotWritable (with the system's reason), kUnsuitable (polygons into STL), kOutOfMemory.
-[[nodiscard]] Result<std::vector<std::string>> write_mesh(const std::filesystem::path& path, const IndexedFaceSet& mesh,
+/// Writes the mesh. The file appears whole or not at all: it is written beside its place, then renamed. "-"
+/// writes to standard output. What the format cannot hold (STL has no attributes) is left out and named in
+/// the returned notes. Errors: kNotWritable (with the system's reason), kUnsuitable (polygons into STL),
+/// kOutOfMemory.
+[[nodiscard]] Result<std::vector<std::string>> write_mesh(const std::filesystem::path& path,
+                                                          const IndexedFaceSet& mesh,
                                                           const WriteOptions& options);
 
 /// The same into memory.
-[[nodiscard]] Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh, const WriteOptions& options);
+[[nodiscard]] Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh,
+                                                         const WriteOptions& options);
 
 }  // namespace vkmesh

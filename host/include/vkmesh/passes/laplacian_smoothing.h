@@ -18,8 +18,8 @@ struct LaplacianSmoothingOptions {
   bool fix_boundary = true;       ///< Boundary vertices stay where they are. Default true.
 };
 
-/// v ← v + λ (mean of its neighbours − v), `iterations` times, all vertices at once (lecture, "Mesh smoothing").
-/// Neighbours are summed in NodeNeighbours order; isolated vertices stay. The reference of
+/// v ← v + λ (mean of its neighbours − v), `iterations` times, all vertices at once (lecture, "Mesh
+/// smoothing"). Neighbours are summed in NodeNeighbours order; isolated vertices stay. The reference of
 /// shaders/laplacian_smoothing.comp, equal to it bit for bit. Coordinates below 2^-100 in magnitude become 0.
 /// O(iterations × edges).
 /// Errors: kUsage for λ outside [0, 1] or a wrong number of positions; kOutOfMemory; kInterrupted.

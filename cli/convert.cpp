@@ -1,0 +1,53 @@
+// vkmesh convert: from one file format into another.
+#include <vkmesh/triangulate.h>
+
+#include "backend.h"
+#include "commands.h"
+
+namespace vkmesh::cli {
+namespace {
+
+struct ConvertOptions {
+  bool triangulate = false;
+  bool ascii = false;
+};
+
+Result<void> run(Job& job, const ConvertOptions& options) {
+  use_host(job);
+  VKMESH_CHECK(job.check_output());
+  VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  if (options.triangulate && !mesh.is_triangles()) {
+    const std::size_t before = mesh.face_count();
+    VKMESH_TRY(Triangulated cut, job.timed("compute", [&] { return triangulate(mesh); }));
+    mesh = std::move(cut.mesh);
+    job.row("triangulated", count_of(before, "face") + " into " + count_of(mesh.face_count(), "triangle"));
+  }
+  job.json()["result"]["triangulated"] = options.triangulate;
+  auto written = job.write(mesh, options.ascii);
+  if (!written && written.error().code == ErrorCode::kUnsuitable && !options.triangulate)
+    written.error().message += "; --triangulate cuts them";
+  return written;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("convert", "Converts between file formats");
+  command->footer(
+      "The extension of OUT names its format. Attributes that the format cannot hold are left out, and "
+      "named.\n"
+      "The mesh is not judged: defects pass through.\n\n"
+      "Example:\n  vkmesh convert data/dragon/dragon_vrip_res4.ply.gz dragon.obj");
+  add_common_options(*command, program.options, true, true);
+  const auto options = std::make_shared<ConvertOptions>();
+  command->add_flag("--triangulate", options->triangulate,
+                    "Cut polygons into triangles (STL holds only these)");
+  command->add_flag("--ascii", options->ascii,
+                    "Write text where the format has a binary form as well (PLY, STL)");
+  command->callback([&program, options] {
+    program.command = "convert";
+    program.action = [options](Job& job) { return run(job, *options); };
+  });
+}
+
+}  // namespace vkmesh::cli

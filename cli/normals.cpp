@@ -1,0 +1,47 @@
+// vkmesh normals: area-weighted vertex normals.
+#include "backend.h"
+#include "commands.h"
+
+namespace vkmesh::cli {
+namespace {
+
+Result<void> run(Job& job) {
+  VKMESH_CHECK(job.check_output());
+  VKMESH_TRY(Backend backend, Backend::open(job));
+  VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
+  VKMESH_TRY(const std::vector<Vec3> normals, backend.vertex_normals(half_edges, mesh.points));
+
+  std::size_t undefined = 0;
+  std::vector<float> values;
+  values.reserve(3 * normals.size());
+  for (const Vec3& n : normals) {
+    values.insert(values.end(), {n.x, n.y, n.z});
+    undefined += n == Vec3(0.0f) ? 1u : 0u;
+  }
+  set_channel(mesh.point_channels, {"normal", 3, std::move(values)});
+  job.json()["result"] = {{"normals", normals.size()}, {"undefined", undefined}};
+  job.row(
+      "normals",
+      grouped(normals.size()) +
+          (undefined ? ", " + grouped(undefined) + " of them zero: no face around gives a direction" : ""));
+  return job.write(mesh);
+}
+
+}  // namespace
+
+void add_normals(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("normals", "Computes area-weighted vertex normals");
+  command->footer(
+      "Written as the PLY properties nx ny nz (OBJ: vn), beside what the input holds. Polygons stay; their "
+      "normals "
+      "are those of\nthe triangles they are cut into. Every device gives the same bytes.\n\n"
+      "Example:\n  vkmesh normals data/dragon/dragon_vrip_res4.ply.gz normals.ply");
+  add_common_options(*command, program.options, true, true);
+  command->callback([&program] {
+    program.command = "normals";
+    program.action = run;
+  });
+}
+
+}  // namespace vkmesh::cli

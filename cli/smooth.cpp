@@ -1,0 +1,71 @@
+// vkmesh smooth: uniform Laplacian smoothing.
+#include <algorithm>
+#include <cmath>
+
+#include "backend.h"
+#include "commands.h"
+
+namespace vkmesh::cli {
+namespace {
+
+Result<void> run(Job& job, const LaplacianSmoothingOptions& options) {
+  VKMESH_CHECK(job.check_output());
+  VKMESH_TRY(Backend backend, Backend::open(job));
+  VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
+  VKMESH_TRY(std::vector<Vec3> smoothed, backend.laplacian_smoothing(half_edges, mesh.points, options));
+
+  double sum = 0, largest = 0;
+  for (std::size_t i = 0; i < smoothed.size(); ++i) {
+    const DVec3 d = DVec3(smoothed[i]) - DVec3(mesh.points[i]);
+    const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    sum += length;
+    largest = std::max(largest, length);
+  }
+  const double mean = smoothed.empty() ? 0 : sum / static_cast<double>(smoothed.size());
+  mesh.points = std::move(smoothed);
+  job.json()["result"] = {{"lambda", options.lambda},
+                          {"iterations", options.iterations},
+                          {"boundary_fixed", options.fix_boundary},
+                          {"mean_move", mean},
+                          {"largest_move", largest}};
+  job.row("smoothed", count_of(options.iterations, "step") + " with lambda " +
+                          brief(static_cast<double>(options.lambda)) + "; points moved by " + brief(mean) +
+                          " on average, " + brief(largest) + " at most");
+
+  // Normals of the surface as it was would shade the new one wrongly.
+  for (auto* channels : {&mesh.point_channels, &mesh.corner_channels, &mesh.face_channels})
+    if (std::erase_if(*channels, [](const Channel& c) { return c.name == "normal"; }) > 0)
+      job.note(
+          "the input's normals do not fit the moved points and were left out; vkmesh normals makes new ones");
+  return job.write(mesh);
+}
+
+}  // namespace
+
+void add_smooth(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("smooth", "Smooths by uniform Laplacian steps");
+  command->footer(
+      "Each step moves every point by lambda of the way to the mean of its neighbours, all points at once. "
+      "Polygons "
+      "stay; their\npoints have the neighbours of the triangles they are cut into. Every device gives the "
+      "same bytes.\n\n"
+      "Example:\n  vkmesh smooth data/dragon/dragon_vrip_res4.ply.gz smooth.ply --lambda 0.5 --iterations "
+      "10");
+  add_common_options(*command, program.options, true, true);
+  const auto options = std::make_shared<LaplacianSmoothingOptions>();
+  command->add_option("--lambda", options->lambda, "Share of the way in each step, from 0 to 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--iterations", options->iterations, "Number of steps, from 0 to 1000000")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  command->add_flag_callback(
+      "--free-boundary", [options] { options->fix_boundary = false; }, "Move boundary points as well");
+  command->callback([&program, options] {
+    program.command = "smooth";
+    program.action = [options](Job& job) { return run(job, *options); };
+  });
+}
+
+}  // namespace vkmesh::cli

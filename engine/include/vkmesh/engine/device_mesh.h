@@ -1,0 +1,81 @@
+// A triangle mesh in device memory.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <vkmesh/engine/buffer.h>
+#include <vkmesh/engine/context.h>
+#include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/node_neighbours.h>
+#include <vkmesh/result.h>
+#include <vkmesh/vec.h>
+
+namespace vkmesh {
+
+/// The passes that a DeviceMesh is made for: it holds what they read and write, and nothing else.
+struct MeshPasses {
+  bool vertex_normals = false;
+  bool laplacian_smoothing = false;
+  bool dihedral_angles = false;
+};
+
+/// The arrays of a HalfEdgeMesh and the views that the passes gather over, uploaded. Connectivity does not
+/// change.
+class DeviceMesh {
+ public:
+  /// Uploads connectivity and positions. O(half-edges).
+  /// Errors: kUnsuitable unless triangles, and for a coordinate out of range (see prepare_positions());
+  /// kUsage unless one position for each vertex; kOutOfMemory; kNoDevice.
+  [[nodiscard]] static Result<DeviceMesh> create(Context& context, const HalfEdgeMesh& mesh,
+                                                 std::span<const Vec3> positions, const MeshPasses& passes);
+
+  /// Bytes of device memory that create() would ask for (a driver may round each of about ten buffers up).
+  [[nodiscard]] static std::uint64_t estimate_memory(const HalfEdgeMesh& mesh, const MeshPasses& passes);
+
+  [[nodiscard]] std::uint32_t vertex_count() const { return vertices_; }
+  [[nodiscard]] std::uint32_t face_count() const { return faces_; }
+  [[nodiscard]] std::uint32_t half_edge_count() const { return 3 * faces_; }
+  [[nodiscard]] const MeshPasses& passes() const { return passes_; }
+
+  /// Replaces the positions. Errors: as create().
+  [[nodiscard]] Result<void> upload_positions(std::span<const Vec3> positions);
+
+  // What the device holds, once recorded work has run. Errors: kUsage for an array of a pass that the mesh
+  // was not made for; kOutOfMemory; kNoDevice.
+  [[nodiscard]] Result<std::vector<Vec3>> download_positions() const;
+  [[nodiscard]] Result<std::vector<Vec3>> download_vertex_normals() const;
+  [[nodiscard]] Result<std::vector<float>> download_half_edge_angles() const;
+  [[nodiscard]] Result<std::vector<float>> download_vertex_maxima() const;
+
+  // The buffers, for passes; those of other passes are empty (size 0).
+  [[nodiscard]] const Buffer& positions() const { return positions_; }  ///< 3 floats a vertex.
+  [[nodiscard]] const Buffer& smoothed_positions() const {
+    return smoothed_positions_;
+  }                                                                 ///< Scratch of smoothing.
+  [[nodiscard]] const Buffer& corners() const { return corners_; }  ///< Vertex of each half-edge.
+  [[nodiscard]] const Buffer& twins() const { return twins_; }      ///< 1 a half-edge.
+  [[nodiscard]] const Buffer& neighbour_offsets() const { return neighbour_offsets_; }  ///< Vertices + 1.
+  [[nodiscard]] const Buffer& neighbour_ids() const { return neighbour_ids_; }
+  [[nodiscard]] const Buffer& boundary_bits() const { return boundary_bits_; }          ///< 1 bit a vertex.
+  [[nodiscard]] const Buffer& corner_offsets() const { return corner_offsets_; }        ///< Vertices + 1.
+  [[nodiscard]] const Buffer& corner_half_edges() const { return corner_half_edges_; }  ///< 1 a half-edge.
+  [[nodiscard]] const Buffer& face_vectors() const { return face_vectors_; }  ///< Scratch: 3 floats a face.
+  [[nodiscard]] const Buffer& vertex_normals() const { return vertex_normals_; }  ///< 3 floats a vertex.
+  [[nodiscard]] const Buffer& half_edge_angles() const {
+    return half_edge_angles_;
+  }                                                                             ///< 1 float a half-edge.
+  [[nodiscard]] const Buffer& vertex_maxima() const { return vertex_maxima_; }  ///< 1 float a vertex.
+
+ private:
+  std::uint32_t vertices_ = 0;
+  std::uint32_t faces_ = 0;
+  MeshPasses passes_;
+  Buffer positions_, smoothed_positions_, corners_, twins_, neighbour_offsets_, neighbour_ids_,
+      boundary_bits_, corner_offsets_, corner_half_edges_, face_vectors_, vertex_normals_, half_edge_angles_,
+      vertex_maxima_;
+};
+
+}  // namespace vkmesh

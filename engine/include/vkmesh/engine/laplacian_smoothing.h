@@ -1,0 +1,17 @@
+// Uniform Laplacian smoothing on a device.
+#pragma once
+
+#include <vkmesh/engine/device_mesh.h>
+#include <vkmesh/engine/recorder.h>
+#include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/result.h>
+
+namespace vkmesh {
+
+/// Records the pass of which vkmesh::laplacian_smoothing() is the reference, equal to it bit for bit; the
+/// result takes the place of the mesh's positions. O(iterations × edges). Errors: kUsage unless the mesh was
+/// made for this pass, and for λ outside [0, 1].
+[[nodiscard]] Result<void> record_laplacian_smoothing(Recorder& recorder, DeviceMesh& mesh,
+                                                      const LaplacianSmoothingOptions& options = {});
+
+}  // namespace vkmesh

@@ -1,0 +1,363 @@
+#include <vkmesh/decimation/decimate.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <vkmesh/decimation/addressable_heap.h>
+
+#include "catching.h"
+#include "decimation/collapse_mesh.h"
+#include "decimation/quadric.h"
+
+namespace vkmesh {
+namespace {
+
+using detail::CollapseMesh;
+using detail::Quadric;
+
+constexpr std::size_t kCollapsesBetweenReports = 4096;
+/// A triangle whose height is less than this share of its edges has no reliable normal.
+constexpr double kDegenerate = 1e-7;
+
+DVec3 cross(const DVec3& a, const DVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(const DVec3& a, const DVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+enum class Legality { kLegal, kLink, kFoldOver, kError };
+
+/// One run. Candidates: each vertex p stands in the heap once, with the half-edge p → q that costs least among those
+/// not known to be illegal.
+class Decimation {
+ public:
+  Decimation(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const DecimateOptions& options)
+      : options_(options),
+        cos_deviation_(std::cos(options.max_normal_deviation)),
+        input_(mesh),
+        mesh_(mesh),
+        positions_(positions),
+        quadrics_(mesh.vertex_count()),
+        candidates_(mesh.vertex_count()),
+        marks_(mesh.vertex_count() + 1, 0),
+        heap_(mesh.vertex_count()),
+        faces_(mesh.face_count()) {}
+
+  Result<Decimated> run(const Progress& progress) {
+    sum_quadrics();
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      const Choice choice = cheapest(v);
+      if (choice.half_edge == kInvalid) continue;
+      candidates_[v].half_edge = choice.half_edge;
+      heap_.append(v, choice.cost);
+    }
+    heap_.heapify();
+
+    const std::size_t first_faces = faces_;
+    const std::size_t target = options_.target_faces.value_or(0);
+    std::size_t steps = 0;
+    while (faces_ > target && !heap_.empty()) {
+      if (progress && ++steps % kCollapsesBetweenReports == 0) {
+        const double done = static_cast<double>(first_faces - faces_) / static_cast<double>(first_faces - target);
+        if (!progress(done)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+      }
+      step();
+    }
+    if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+    return finish(target);
+  }
+
+ private:
+  struct Candidate {
+    std::uint32_t half_edge = kInvalid;
+    bool held = false;  ///< A cheaper candidate of this vertex was found illegal.
+    bool held_by_error = false;
+  };
+  struct Choice {
+    std::uint32_t half_edge = kInvalid;
+    float cost = 0;
+  };
+
+  [[nodiscard]] DVec3 offset(std::uint32_t from, std::uint32_t to) const {
+    return DVec3(positions_[to]) - DVec3(positions_[from]);
+  }
+
+  void sum_quadrics() {
+    for (std::uint32_t f = 0; f < input_.face_count(); ++f) {
+      const std::array<std::uint32_t, 3> v = {mesh_.origin(4 * f), mesh_.origin(4 * f + 1), mesh_.origin(4 * f + 2)};
+      const std::array<DVec3, 3> edge = {offset(v[0], v[1]), offset(v[1], v[2]), offset(v[2], v[0])};
+      DVec3 normal = cross(edge[0], edge[1]);
+      const double length = std::sqrt(dot(normal, normal));
+      if (!(length > 0)) continue;
+      normal /= length;
+      for (const std::uint32_t corner : v) quadrics_[corner].add_plane(normal, 0.5 * length);
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        if (!mesh_.is_ghost(mesh_.twin(4 * f + i))) continue;
+        const double area = dot(edge[i], edge[i]);
+        if (!(area > 0)) continue;
+        const DVec3 across = cross(edge[i] / std::sqrt(area), normal);
+        quadrics_[v[i]].add_plane(across, options_.boundary_weight * area);
+        quadrics_[v[(i + 1) % 3]].add_plane(across, options_.boundary_weight * area);
+      }
+    }
+  }
+
+#ifndef MODE
+#define MODE 0
+#endif
+  [[nodiscard]] float cost(std::uint32_t p, std::uint32_t q) const {
+    double c = quadrics_[p].at(offset(p, q));
+    if (MODE == 0) c += quadrics_[q].constant;
+    if (MODE == 2) c = std::max(0.0, c - quadrics_[p].constant);
+    return static_cast<float>(c);
+  }
+
+  /// The cheapest half-edge that leaves v, legal or not; ties to the smaller.
+  [[nodiscard]] Choice cheapest(std::uint32_t v) const {
+    Choice best;
+    const std::uint32_t start = mesh_.leading(v);
+    if (start == kInvalid) return best;
+    std::uint32_t h = start;
+    do {
+      const std::uint32_t q = mesh_.target(h);
+      if (q != mesh_.apex()) {
+        const float c = cost(v, q);
+        if (best.half_edge == kInvalid || c < best.cost || (c == best.cost && h < best.half_edge)) best = {h, c};
+      }
+      h = mesh_.around_vertex(h);
+    } while (h != start);
+    return best;
+  }
+
+  void step() {
+    const std::uint32_t p = heap_.top();
+    const std::uint32_t h = candidates_[p].half_edge;
+    if (MODE == 0 || MODE==2) {
+      const float now = cost(p, mesh_.target(h));
+      if (now > heap_.top_priority()) {
+        if (candidates_[p].held) { choose_legal(p); } else reconsider(p);
+        return;
+      }
+    }
+    if (judge(h) == Legality::kLegal) {
+      collapse(h);
+    } else {
+      choose_legal(p);
+    }
+  }
+
+  /// Judges the candidates of p from the cheapest on and settles on the first that is legal, or on none.
+  void choose_legal(std::uint32_t p) {
+    choices_.clear();
+    const std::uint32_t start = mesh_.leading(p);
+    std::uint32_t h = start;
+    do {
+      const std::uint32_t q = mesh_.target(h);
+      if (q != mesh_.apex()) choices_.push_back({h, cost(p, q)});
+      h = mesh_.around_vertex(h);
+    } while (h != start);
+    std::sort(choices_.begin(), choices_.end(), [](const Choice& a, const Choice& b) {
+      return a.cost < b.cost || (a.cost == b.cost && a.half_edge < b.half_edge);
+    });
+    Candidate& candidate = candidates_[p];
+    candidate.held = true;
+    for (const Choice& choice : choices_) {
+      const Legality legality = judge(choice.half_edge);
+      if (legality == Legality::kLegal) {
+        candidate.half_edge = choice.half_edge;
+        heap_.set(p, choice.cost);
+        return;
+      }
+      if (legality == Legality::kLink) ++rejected_link_;
+      if (legality == Legality::kFoldOver) ++rejected_fold_over_;
+      if (legality == Legality::kError) candidate.held_by_error = true;
+    }
+    candidate.half_edge = kInvalid;
+    heap_.remove(p);
+  }
+
+  [[nodiscard]] double error_of(std::uint32_t p, std::uint32_t q) const {
+    const double weight = quadrics_[p].weight + quadrics_[q].weight;
+    const double sum = quadrics_[p].at(offset(p, q)) + quadrics_[q].constant;
+    return weight > 0 ? std::sqrt(sum / weight) : 0;
+  }
+
+  [[nodiscard]] Legality judge(std::uint32_t h) {
+    const std::uint32_t t = mesh_.twin(h);
+    const std::uint32_t p = mesh_.origin(h), q = mesh_.origin(t);
+    const std::uint32_t a = mesh_.origin(mesh_.previous(h)), b = mesh_.origin(mesh_.previous(t));
+    if (options_.max_error && error_of(p, q) > *options_.max_error) return Legality::kError;
+
+    // Link condition: p and q share the neighbours a and b, which differ, and nothing else; and the faces beyond a and b
+    // do not close the four vertices to a tetrahedron.
+    if (a == b) return Legality::kLink;
+    ring_.clear();
+    const std::uint32_t stamp = ++stamp_;
+    for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out)) {
+      ring_.push_back(mesh_.target(out));
+      marks_[ring_.back()] = stamp;
+    }
+    std::size_t shared = 0, valence = 1;
+    for (std::uint32_t out = mesh_.around_vertex(t); out != t; out = mesh_.around_vertex(out)) {
+      shared += marks_[mesh_.target(out)] == stamp ? 1 : 0;
+      ++valence;
+    }
+    if (shared != 2 || (ring_.size() == 2 && valence == 3)) return Legality::kLink;
+    return folds_over(p, q) ? Legality::kFoldOver : Legality::kLegal;
+  }
+
+  /// Whether a face (p, x, y) that remains turns too far, or loses its area, when p moves to q. ring_ holds the neighbours
+  /// of p but q.
+  [[nodiscard]] bool folds_over(std::uint32_t p, std::uint32_t q) const {
+    const DVec3 move = offset(p, q);
+    std::uint32_t x = ring_[0];
+    DVec3 from_x = x != mesh_.apex() ? offset(p, x) : DVec3(0.0);
+    for (std::size_t i = 1; i < ring_.size(); ++i) {
+      const std::uint32_t y = ring_[i];
+      const DVec3 from_y = y != mesh_.apex() ? offset(p, y) : DVec3(0.0);
+      if (x != mesh_.apex() && y != mesh_.apex()) {
+        const DVec3 before = cross(from_x, from_y);
+        const DVec3 to_x = from_x - move, to_y = from_y - move;
+        const DVec3 after = cross(to_x, to_y);
+        const double after2 = dot(after, after), before2 = dot(before, before);
+        if (after2 <= square(kDegenerate * (dot(to_x, to_x) + dot(to_y, to_y)))) {
+          if (before2 > square(kDegenerate * (dot(from_x, from_x) + dot(from_y, from_y)))) return true;
+        } else if (dot(before, after) < cos_deviation_ * std::sqrt(before2 * after2)) {
+          return true;
+        }
+      }
+      x = y;
+      from_x = from_y;
+    }
+    return false;
+  }
+
+  [[nodiscard]] static double square(double x) { return x * x; }
+
+  void collapse(std::uint32_t h) {
+    const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
+    const std::uint32_t a_to_p = mesh_.previous(h), b_to_q = mesh_.previous(mesh_.twin(h));
+    error_ = std::max(error_, error_of(p, q));
+    quadrics_[q].add(quadrics_[p], offset(p, q));
+    // judge() left the other neighbours of p in ring_.
+    faces_ -= mesh_.collapse(h);
+    ++collapses_;
+    heap_.remove(p);
+    for (const std::uint32_t r : ring_) {
+      if (r == mesh_.apex()) continue;
+      const std::uint32_t candidate = candidates_[r].half_edge;
+      if (candidates_[r].held || candidate == kInvalid || candidate == a_to_p || candidate == b_to_q ||
+          mesh_.target(candidate) == q) {
+        reconsider(r);
+      } else {
+        const std::uint32_t towards = find(r, q);
+        const float c = cost(r, q);
+        const float current = heap_.priority(r);
+        if (c < current || (c == current && towards < candidate)) {
+          candidates_[r].half_edge = towards;
+          heap_.set(r, c);
+        }
+      }
+    }
+    reconsider(q);
+  }
+
+  /// The half-edge r → q, which exists.
+  [[nodiscard]] std::uint32_t find(std::uint32_t r, std::uint32_t q) const {
+    std::uint32_t h = mesh_.leading(r);
+    while (mesh_.target(h) != q) h = mesh_.around_vertex(h);
+    return h;
+  }
+
+  void reconsider(std::uint32_t v) {
+    const Choice choice = cheapest(v);
+    candidates_[v] = {choice.half_edge, false, false};
+    if (choice.half_edge == kInvalid) {
+      heap_.remove(v);
+    } else {
+      heap_.set(v, choice.cost);
+    }
+  }
+
+  [[nodiscard]] Result<Decimated> finish(std::size_t target) const {
+    Decimated result;
+    result.collapses = collapses_;
+    result.rejected_link = rejected_link_;
+    result.rejected_fold_over = rejected_fold_over_;
+    result.error = error_;
+    if (faces_ > target || !options_.target_faces) {
+      const bool by_error = std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.held_by_error; });
+      result.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
+    }
+
+    std::vector<std::uint32_t> new_vertex(positions_.size(), kInvalid);
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      if (mesh_.leading(v) == kInvalid) continue;
+      new_vertex[v] = static_cast<std::uint32_t>(result.source_vertex.size());
+      result.source_vertex.push_back(v);
+      result.positions.push_back(positions_[v]);
+    }
+    std::vector<std::uint32_t> new_face(mesh_.face_count(), kInvalid);
+    std::uint32_t count = 0;
+    for (std::uint32_t f = 0; f < new_face.size(); ++f)
+      if (mesh_.alive(f)) new_face[f] = count++;
+    std::vector<std::uint32_t> origin(3 * std::size_t{count}), twin(origin.size()), leading(result.positions.size(), kInvalid);
+    for (std::uint32_t f = 0; f < new_face.size(); ++f) {
+      if (new_face[f] == kInvalid) continue;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const std::uint32_t h = 3 * new_face[f] + i, v = new_vertex[mesh_.origin(4 * f + i)];
+        const std::uint32_t t = mesh_.twin(4 * f + i);
+        const bool boundary = mesh_.is_ghost(t);
+        origin[h] = v;
+        twin[h] = boundary ? kInvalid : 3 * new_face[t / 4] + t % 4;
+        if (leading[v] == kInvalid || boundary) leading[v] = h;
+      }
+    }
+    result.mesh = HalfEdgeMesh::from_arrays(std::move(origin), std::move(twin), std::move(leading));
+    return result;
+  }
+
+  const DecimateOptions& options_;
+  double cos_deviation_;
+  const HalfEdgeMesh& input_;
+  CollapseMesh mesh_;
+  std::span<const Vec3> positions_;
+  std::vector<Quadric> quadrics_;
+  std::vector<Candidate> candidates_;
+  std::vector<std::uint32_t> marks_;
+  AddressableHeap<> heap_;
+  std::size_t faces_;
+  std::vector<std::uint32_t> ring_;
+  std::vector<Choice> choices_;
+  std::uint32_t stamp_ = 0;
+  std::size_t collapses_ = 0;
+  std::size_t rejected_link_ = 0;
+  std::size_t rejected_fold_over_ = 0;
+  double error_ = 0;
+};
+
+}  // namespace
+
+std::string name_of(DecimateStop stop) {
+  switch (stop) {
+    case DecimateStop::kTargetReached:
+      return "target reached";
+    case DecimateStop::kErrorBound:
+      return "error bound";
+    case DecimateStop::kNoLegalCollapse:
+      break;
+  }
+  return "no legal collapse";
+}
+
+Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const DecimateOptions& options,
+                           const Progress& progress) {
+  if (!mesh.is_triangles()) return fail(ErrorCode::kUnsuitable, "decimation takes triangles only: triangulate first");
+  if (positions.size() != mesh.vertex_count())
+    return fail(ErrorCode::kUsage, "decimation needs one position for each vertex");
+  return detail::catching([&]() -> Result<Decimated> { return Decimation(mesh, positions, options).run(progress); });
+}
+
+}  // namespace vkmesh

@@ -1,0 +1,29 @@
+// What every pass asks of its input.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/passes/arithmetic.h>
+#include <vkmesh/result.h>
+
+namespace vkmesh::detail {
+
+inline Result<void> require_triangles(const HalfEdgeMesh& mesh, const char* pass) {
+  if (mesh.is_triangles()) return {};
+  return fail(ErrorCode::kUnsuitable,
+              std::string(pass) + " takes triangles only: triangulate the polygons first");
+}
+
+inline Result<std::vector<Vec3>> prepared(std::span<const Vec3> positions, std::size_t vertices) {
+  if (positions.size() != vertices)
+    return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " positions for " +
+                                       std::to_string(vertices) + " vertices");
+  std::vector<Vec3> result(positions.size());
+  VKMESH_CHECK(prepare_positions(positions, result));
+  return result;
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,247 @@
+#include <vkmesh/surface_distance.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "catching.h"
+
+namespace vkmesh {
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+constexpr std::size_t kSamplesBetweenReports = 8192;
+
+double dot(const DVec3& a, const DVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+DVec3 cross(const DVec3& a, const DVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+struct Triangle {
+  DVec3 a, b, c;
+};
+
+Triangle triangle(const TriangleSurface& surface, std::size_t f) {
+  return {DVec3(surface.points[surface.corners[3 * f]]), DVec3(surface.points[surface.corners[3 * f + 1]]),
+          DVec3(surface.points[surface.corners[3 * f + 2]])};
+}
+
+double squared_distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b) {
+  const DVec3 along = b - a, from_a = p - a;
+  const double length2 = dot(along, along);
+  const double t = length2 > 0 ? std::clamp(dot(from_a, along) / length2, 0.0, 1.0) : 0.0;
+  const DVec3 rest = from_a - t * along;
+  return dot(rest, rest);
+}
+
+/// To the plane where p lies over the triangle, else to the nearest edge: a triangle without area is its edges.
+double squared_distance(const DVec3& p, const Triangle& t) {
+  const DVec3 normal = cross(t.b - t.a, t.c - t.a);
+  const double area2 = dot(normal, normal);
+  if (area2 > 0 && dot(cross(t.b - t.a, p - t.a), normal) >= 0 && dot(cross(t.c - t.b, p - t.b), normal) >= 0 &&
+      dot(cross(t.a - t.c, p - t.c), normal) >= 0) {
+    const double height = dot(p - t.a, normal);
+    return height * height / area2;
+  }
+  return std::min({squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
+                   squared_distance_to_segment(p, t.c, t.a)});
+}
+
+/// Boxes around halves of the triangles, halved again: nearest-triangle search.
+class Tree {
+ public:
+  explicit Tree(const TriangleSurface& surface) {
+    const std::size_t count = surface.corners.size() / 3;
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::vector<Vec3> centres(count);
+    for (std::size_t f = 0; f < count; ++f) {
+      const Triangle t = triangle(surface, f);
+      centres[f] = Vec3((t.a + t.b + t.c) / 3.0);
+    }
+    nodes_.reserve(2 * (count / kLeafSize + 1));
+    split(surface, centres, order, 0, static_cast<std::uint32_t>(count));
+    triangles_.reserve(count);
+    for (const std::uint32_t f : order) triangles_.push_back(triangle(surface, f));
+  }
+
+  /// The squared distance of p from its nearest triangle. `hint` is any triangle, best one near p; becomes the nearest.
+  [[nodiscard]] double nearest(const DVec3& p, std::uint32_t& hint) const {
+    double best = squared_distance(p, triangles_[hint]);
+    std::array<std::pair<std::uint32_t, double>, 64> stack;
+    std::size_t top = 0;
+    stack[top++] = {0, squared_distance_to_box(p, nodes_[0])};
+    while (top > 0) {
+      const auto [n, bound] = stack[--top];
+      if (bound >= best) continue;
+      const Node& node = nodes_[n];
+      if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          const double d = squared_distance(p, triangles_[i]);
+          if (d < best) {
+            best = d;
+            hint = i;
+          }
+        }
+        continue;
+      }
+      std::pair<std::uint32_t, double> nearer{n + 1, squared_distance_to_box(p, nodes_[n + 1])};
+      std::pair<std::uint32_t, double> farther{node.first, squared_distance_to_box(p, nodes_[node.first])};
+      if (farther.second < nearer.second) std::swap(nearer, farther);
+      stack[top++] = farther;
+      stack[top++] = nearer;
+    }
+    return best;
+  }
+
+ private:
+  struct Node {
+    Vec3 low, high;
+    std::uint32_t first = 0;  ///< Leaf: first triangle. Else: the second child; the first one follows its parent.
+    std::uint32_t count = 0;  ///< Leaf: triangles. Else 0.
+  };
+
+  static double squared_distance_to_box(const DVec3& p, const Node& node) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double outside = std::max({node.low[i] - p[i], p[i] - node.high[i], 0.0});
+      sum += outside * outside;
+    }
+    return sum;
+  }
+
+  /// The node of order[first, last) and those below it. Halving bounds the depth by 32.
+  void split(const TriangleSurface& surface, const std::vector<Vec3>& centres, std::vector<std::uint32_t>& order,
+             std::uint32_t first, std::uint32_t last) {
+    const std::size_t index = nodes_.size();
+    Node node{Vec3(std::numeric_limits<float>::infinity()), Vec3(-std::numeric_limits<float>::infinity()), first,
+              last - first};
+    Vec3 low = node.low, high = node.high;
+    for (std::uint32_t i = first; i < last; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = surface.points[surface.corners[3 * std::size_t{order[i]} + k]];
+        node.low = glm::min(node.low, p);
+        node.high = glm::max(node.high, p);
+      }
+      low = glm::min(low, centres[order[i]]);
+      high = glm::max(high, centres[order[i]]);
+    }
+    nodes_.push_back(node);
+    if (last - first <= kLeafSize) return;
+    const Vec3 extent = high - low;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::uint32_t middle = first + (last - first) / 2;
+    std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       return std::pair(centres[a][axis], a) < std::pair(centres[b][axis], b);
+                     });
+    split(surface, centres, order, first, middle);
+    nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[index].count = 0;
+    split(surface, centres, order, middle, last);
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<Triangle> triangles_;
+};
+
+double area(const Triangle& t) {
+  const DVec3 normal = cross(t.b - t.a, t.c - t.a);
+  return 0.5 * std::sqrt(dot(normal, normal));
+}
+
+/// Reports in [begin, begin + 0.5].
+Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSurface& to,
+                                  const SurfaceDistanceOptions& options, const Progress& progress, double begin) {
+  const Tree tree(to);
+  const std::size_t faces = from.corners.size() / 3;
+  double total = 0;
+  for (std::size_t f = 0; f < faces; ++f) total += area(triangle(from, f));
+
+  std::mt19937 random(options.seed);
+  // Not a standard distribution: its values differ between libraries.
+  const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
+  const auto samples = static_cast<double>(options.samples);
+  DistanceSummary summary;
+  double sum = 0, sum2 = 0, maximum2 = 0;
+  std::uint32_t hint = 0;
+  std::size_t f = 0;
+  Triangle t = triangle(from, 0);
+  double passed = area(t);  // of the faces up to f
+  for (std::size_t i = 0; i < options.samples; ++i) {
+    if (progress && i % kSamplesBetweenReports == 0 && !progress(begin + 0.5 * static_cast<double>(i) / samples))
+      return fail(ErrorCode::kInterrupted, "the comparison was cancelled");
+    const double place = total * ((static_cast<double>(i) + uniform()) / samples);
+    while (passed <= place && f + 1 < faces) {
+      t = triangle(from, ++f);
+      passed += area(t);
+    }
+    double u = uniform(), v = uniform();
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    const double d2 = tree.nearest(t.a + u * (t.b - t.a) + v * (t.c - t.a), hint);
+    sum += std::sqrt(d2);
+    sum2 += d2;
+    maximum2 = std::max(maximum2, d2);
+  }
+  summary.mean = sum / samples;
+  summary.root_mean_square = std::sqrt(sum2 / samples);
+  summary.maximum = std::sqrt(maximum2);
+  return summary;
+}
+
+Result<void> check(const TriangleSurface& surface) {
+  if (surface.corners.size() % 3 != 0) return fail(ErrorCode::kUsage, "a surface needs three corners for each triangle");
+  double total = 0;
+  for (const std::uint32_t corner : surface.corners)
+    if (corner >= surface.points.size()) return fail(ErrorCode::kUsage, "a corner of the surface is out of range");
+  for (std::size_t f = 0; f < surface.corners.size() / 3; ++f) total += area(triangle(surface, f));
+  if (!(total > 0)) return fail(ErrorCode::kUnsuitable, "a surface without area has no samples to compare");
+  return {};
+}
+
+double diagonal_of(const TriangleSurface& surface) {
+  Vec3 low(std::numeric_limits<float>::infinity()), high = -low;
+  for (const std::uint32_t corner : surface.corners) {
+    low = glm::min(low, surface.points[corner]);
+    high = glm::max(high, surface.points[corner]);
+  }
+  const DVec3 extent = DVec3(high) - DVec3(low);
+  return std::sqrt(dot(extent, extent));
+}
+
+}  // namespace
+
+DistanceSummary SurfaceDistance::two_sided() const {
+  DistanceSummary both;
+  both.mean = (a_to_b.mean + b_to_a.mean) / 2;
+  both.root_mean_square = std::sqrt((a_to_b.root_mean_square * a_to_b.root_mean_square +
+                                     b_to_a.root_mean_square * b_to_a.root_mean_square) /
+                                    2);
+  both.maximum = std::max(a_to_b.maximum, b_to_a.maximum);
+  return both;
+}
+
+Result<SurfaceDistance> surface_distance(const TriangleSurface& a, const TriangleSurface& b,
+                                         const SurfaceDistanceOptions& options, const Progress& progress) {
+  if (options.samples == 0) return fail(ErrorCode::kUsage, "the comparison needs at least one sample");
+  return detail::catching([&]() -> Result<SurfaceDistance> {
+    VKMESH_CHECK(check(a));
+    VKMESH_CHECK(check(b));
+    SurfaceDistance distance;
+    VKMESH_TRY(distance.a_to_b, one_sided(a, b, options, progress, 0.0));
+    VKMESH_TRY(distance.b_to_a, one_sided(b, a, options, progress, 0.5));
+    distance.diagonal = diagonal_of(a);
+    return distance;
+  });
+}
+
+}  // namespace vkmesh

@@ -1,0 +1,85 @@
+// Push constants of every kernel, declared once for GLSL and C++. Addresses come after the two counts, so that each is
+// 8-byte aligned in both languages; engine/src asserts the sizes.
+#ifndef VKMESH_PARAMS_H
+#define VKMESH_PARAMS_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#define VKMESH_UINT std::uint32_t
+#define VKMESH_FLOAT float
+#define VKMESH_FLOATS std::uint64_t
+#define VKMESH_UINTS std::uint64_t
+namespace vkmesh::kernels {
+#else
+// clang-format off
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer Floats { float at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Uints { uint at[]; };
+// clang-format on
+#define VKMESH_UINT uint
+#define VKMESH_FLOAT float
+#define VKMESH_FLOATS Floats
+#define VKMESH_UINTS Uints
+#endif
+
+// Every kernel runs one thread for each i in [first, first + count).
+
+/// triangle_areas.comp, triangle_normals.comp: i is a face.
+struct TrianglesParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_FLOATS vectors;    ///< 3 a face: written
+};
+
+/// vertex_normals.comp: i is a vertex.
+struct VertexNormalsParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS areas;           ///< 3 a face, from triangle_areas
+  VKMESH_UINTS corner_offsets;   ///< vertices + 1
+  VKMESH_UINTS corner_half_edges;
+  VKMESH_FLOATS normals;         ///< 3 a vertex: written
+};
+
+/// laplacian_smoothing.comp: i is a vertex.
+struct LaplacianSmoothingParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_UINTS neighbour_offsets;  ///< vertices + 1
+  VKMESH_UINTS neighbour_ids;
+  VKMESH_UINTS fixed_bits;         ///< bit i % 32 of word i / 32: vertex i stays (read when use_fixed is 1)
+  VKMESH_FLOATS source;            ///< 3 a vertex
+  VKMESH_FLOATS target;            ///< 3 a vertex: written
+  VKMESH_FLOAT lambda;
+  VKMESH_UINT use_fixed;
+};
+
+/// dihedral_angles.comp: i is a half-edge.
+struct DihedralAnglesParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS normals;  ///< 3 a face, from triangle_normals
+  VKMESH_UINTS twins;
+  VKMESH_FLOATS angles;   ///< 1 a half-edge: written
+};
+
+/// vertex_maxima.comp: i is a vertex.
+struct VertexMaximaParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS angles;          ///< 1 a half-edge of a triangle mesh
+  VKMESH_UINTS corner_offsets;   ///< vertices + 1
+  VKMESH_UINTS corner_half_edges;
+  VKMESH_FLOATS maxima;          ///< 1 a vertex: written
+};
+
+#ifdef __cplusplus
+}  // namespace vkmesh::kernels
+#endif
+#undef VKMESH_UINT
+#undef VKMESH_FLOAT
+#undef VKMESH_FLOATS
+#undef VKMESH_UINTS
+
+#endif

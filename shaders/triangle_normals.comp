@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The unit normal of each triangle; the zero vector for one without area.
+#include "kernel.glsl"
+
+VKMESH_PUSH_CONSTANTS(TrianglesParams);
+
+void main() {
+  VKMESH_THREAD_INDEX(f);
+  store3(p.vectors, f,
+         unit_vector(area_vector(load3(p.positions, p.corners.at[3 * f]), load3(p.positions, p.corners.at[3 * f + 1]),
+                                 load3(p.positions, p.corners.at[3 * f + 2]))));
+}

@@ -1,0 +1,14 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Gathers the area vectors of the faces around each vertex, in ascending order of faces.
+#include "kernel.glsl"
+
+VKMESH_PUSH_CONSTANTS(VertexNormalsParams);
+
+void main() {
+  VKMESH_THREAD_INDEX(v);
+  precise vec3 sum = vec3(0.0);
+  const uint end = p.corner_offsets.at[v + 1];
+  for (uint c = p.corner_offsets.at[v]; c < end; ++c) sum = sum + load3(p.areas, p.corner_half_edges.at[c] / 3);
+  store3(p.normals, v, unit_vector(sum));
+}
