@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <vkmesh/half_edge_mesh.h>
@@ -14,34 +15,34 @@
 
 namespace vkmesh::cli {
 
+/// The passes, as the functions of the same names in vkmesh/passes/. All backends give the same bits, and
+/// book their times in the job they were opened for.
 class Backend {
  public:
-  /// What --device asks for; reported in the job. Errors: kNoDevice.
-  [[nodiscard]] static Result<Backend> open(Job& job);
+  Backend() = default;
+  virtual ~Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
 
-  Backend(Backend&&) noexcept;
-  Backend& operator=(Backend&&) noexcept;
-  ~Backend();
-
-  // As the functions of the same names in vkmesh/passes/. Both kinds of backend give the same bits.
-  [[nodiscard]] Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
-                                                         std::span<const Vec3> positions);
-  [[nodiscard]] Result<std::vector<float>> largest_dihedral_angles(const HalfEdgeMesh& mesh,
-                                                                   std::span<const Vec3> positions);
-  [[nodiscard]] Result<std::vector<Vec3>> laplacian_smoothing(const HalfEdgeMesh& mesh,
-                                                              std::span<const Vec3> positions,
-                                                              const LaplacianSmoothingOptions& options);
-
- private:
-  struct Vulkan;
-
-  Backend(Job& job, std::unique_ptr<Vulkan> vulkan);
-
-  Job* job_;
-  std::unique_ptr<Vulkan> vulkan_;  ///< Null: the CPU references.
+  [[nodiscard]] virtual Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
+                                                                 std::span<const Vec3> positions) = 0;
+  /// DihedralAngles::vertex_maximum.
+  [[nodiscard]] virtual Result<std::vector<float>> largest_dihedral_angles(
+      const HalfEdgeMesh& mesh, std::span<const Vec3> positions) = 0;
+  [[nodiscard]] virtual Result<std::vector<Vec3>> laplacian_smoothing(
+      const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+      const LaplacianSmoothingOptions& options) = 0;
 };
+
+/// The backend that --device asks for, reported in the job. Errors: kNoDevice, kOutOfMemory.
+[[nodiscard]] Result<std::unique_ptr<Backend>> open_backend(Job& job);
 
 /// For subcommands that run on the host alone: reports that, and says so when another device was asked for.
 void use_host(Job& job);
+
+#ifdef VKMESH_HAS_VULKAN
+/// A Vulkan device, chosen as ContextOptions::device is. Errors: kNoDevice, kOutOfMemory.
+[[nodiscard]] Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device);
+#endif
 
 }  // namespace vkmesh::cli

@@ -10,10 +10,10 @@ namespace {
 
 Result<void> run(Job& job) {
   VKMESH_CHECK(job.check_output());
-  VKMESH_TRY(Backend backend, Backend::open(job));
+  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
-  VKMESH_TRY(std::vector<float> angles, backend.largest_dihedral_angles(half_edges, mesh.points));
+  VKMESH_TRY(std::vector<float> angles, backend->largest_dihedral_angles(half_edges, mesh.points));
 
   double sum = 0, largest = 0;
   for (const float angle : angles) {

@@ -7,10 +7,10 @@ namespace {
 
 Result<void> run(Job& job) {
   VKMESH_CHECK(job.check_output());
-  VKMESH_TRY(Backend backend, Backend::open(job));
+  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
-  VKMESH_TRY(const std::vector<Vec3> normals, backend.vertex_normals(half_edges, mesh.points));
+  VKMESH_TRY(const std::vector<Vec3> normals, backend->vertex_normals(half_edges, mesh.points));
 
   std::size_t undefined = 0;
   std::vector<float> values;

@@ -10,10 +10,10 @@ namespace {
 
 Result<void> run(Job& job, const LaplacianSmoothingOptions& options) {
   VKMESH_CHECK(job.check_output());
-  VKMESH_TRY(Backend backend, Backend::open(job));
+  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
-  VKMESH_TRY(std::vector<Vec3> smoothed, backend.laplacian_smoothing(half_edges, mesh.points, options));
+  VKMESH_TRY(std::vector<Vec3> smoothed, backend->laplacian_smoothing(half_edges, mesh.points, options));
 
   double sum = 0, largest = 0;
   for (std::size_t i = 0; i < smoothed.size(); ++i) {

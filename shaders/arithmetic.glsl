@@ -13,15 +13,17 @@ vec3 zero_below(vec3 v, float limit) {
 
 float reciprocal(float x) {
   precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_SEED - floatBitsToUint(x));
-  for (int i = 0; i < 4; ++i) y = y * (2.0 - x * y);
-  return y;
+  for (int i = 0; i < 3; ++i) y = y * (2.0 - x * y);
+  precise float refined = y + y * (1.0 - x * y);
+  return refined;
 }
 
 float reciprocal_root(float x) {
   precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_ROOT_SEED - (floatBitsToUint(x) >> 1));
   precise float half_x = 0.5 * x;
-  for (int i = 0; i < 4; ++i) y = y * (1.5 - (half_x * y) * y);
-  return y;
+  for (int i = 0; i < 3; ++i) y = y * (1.5 - (half_x * y) * y);
+  precise float refined = y + y * (0.5 - (half_x * y) * y);
+  return refined;
 }
 
 float root(float x) {

@@ -1,9 +1,10 @@
 #include "support/data.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <set>
 #include <string>
+
+#include <catch2/catch.hpp>
 
 namespace vkmesh::test {
 namespace {
@@ -28,7 +29,8 @@ std::vector<std::filesystem::path> cgal_meshes() {
   static const std::set<std::string> kExtensions = {".off", ".obj", ".ply", ".stl"};
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
-    if (entry.is_regular_file() && kExtensions.contains(entry.path().extension().string())) found.push_back(entry.path());
+    if (entry.is_regular_file() && kExtensions.contains(entry.path().extension().string()))
+      found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
+
+#include <catch2/catch.hpp>
 
 #include <vkmesh/consolidate.h>
 
@@ -39,7 +40,8 @@ IndexedFaceSet tetrahedron() {
 IndexedFaceSet quad_cube() {
   IndexedFaceSet mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.points.emplace_back(static_cast<float>(i & 1), static_cast<float>((i >> 1) & 1), static_cast<float>(i >> 2));
+    mesh.points.emplace_back(static_cast<float>(i & 1), static_cast<float>((i >> 1) & 1),
+                             static_cast<float>(i >> 2));
   mesh.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
   mesh.face_offsets = {0, 4, 8, 12, 16, 20, 24};
   return mesh;
@@ -58,12 +60,12 @@ IndexedFaceSet cube() {
 
 IndexedFaceSet icosphere(unsigned level, float radius) {
   const double t = (1.0 + std::sqrt(5.0)) / 2.0;
-  std::vector<DVec3> points = {{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t},
-                               {0, -1, -t}, {0, 1, -t}, {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}};
+  std::vector<DVec3> points = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
+                               {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
   std::vector<std::array<std::uint32_t, 3>> faces = {
-      {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (unsigned l = 0; l < level; ++l) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
     const auto split = [&](std::uint32_t a, std::uint32_t b) {
@@ -82,7 +84,8 @@ IndexedFaceSet icosphere(unsigned level, float radius) {
   }
   IndexedFaceSet mesh;
   for (const DVec3& p : points)
-    mesh.points.emplace_back(p * (static_cast<double>(radius) / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z)));
+    mesh.points.emplace_back(p *
+                             (static_cast<double>(radius) / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z)));
   for (const auto& [a, b, c] : faces) add_triangle(mesh, a, b, c);
   return mesh;
 }
@@ -107,7 +110,8 @@ IndexedFaceSet torus(std::uint32_t rings, std::uint32_t sides, float major, floa
 IndexedFaceSet grid(std::uint32_t nx, std::uint32_t ny) {
   IndexedFaceSet mesh;
   for (std::uint32_t y = 0; y <= ny; ++y)
-    for (std::uint32_t x = 0; x <= nx; ++x) mesh.points.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
+    for (std::uint32_t x = 0; x <= nx; ++x)
+      mesh.points.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
   for (std::uint32_t y = 0; y < ny; ++y)
     for (std::uint32_t x = 0; x < nx; ++x) {
       const std::uint32_t p = y * (nx + 1) + x;

@@ -14,13 +14,16 @@ IndexedFaceSet tetrahedron();
 IndexedFaceSet cube();
 /// The same with six quads.
 IndexedFaceSet quad_cube();
-/// Unit sphere from the icosahedron, each triangle split 1:4 `level` times: 10·4^level + 2 points, 20·4^level faces.
+/// Unit sphere from the icosahedron, each triangle split 1:4 `level` times: 10·4^level + 2 points, 20·4^level
+/// faces.
 IndexedFaceSet icosphere(unsigned level, float radius = 1.0f);
 /// Closed torus of rings × sides quads, each cut into two triangles.
 IndexedFaceSet torus(std::uint32_t rings, std::uint32_t sides, float major = 1.0f, float minor = 0.4f);
-/// Flat grid in the plane z = 0 over [0, nx] × [0, ny]: (nx+1)(ny+1) points, 2 nx ny triangles, one boundary loop.
+/// Flat grid in the plane z = 0 over [0, nx] × [0, ny]: (nx+1)(ny+1) points, 2 nx ny triangles, one boundary
+/// loop.
 IndexedFaceSet grid(std::uint32_t nx, std::uint32_t ny);
-/// A band of n quads cut into triangles, closed with half a turn: manifold, not orientable, one boundary loop.
+/// A band of n quads cut into triangles, closed with half a turn: manifold, not orientable, one boundary
+/// loop.
 IndexedFaceSet mobius(std::uint32_t n);
 /// Open tube of rings × sides quads cut into triangles: two boundary loops.
 IndexedFaceSet cylinder(std::uint32_t rings, std::uint32_t sides);
@@ -29,7 +32,8 @@ IndexedFaceSet bow_tie();
 /// Three triangles on one edge.
 IndexedFaceSet fin();
 
-/// Moves every coordinate by a pseudo-random amount of at most `amplitude`; the same seed gives the same mesh.
+/// Moves every coordinate by a pseudo-random amount of at most `amplitude`; the same seed gives the same
+/// mesh.
 void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed);
 
 /// consolidate() of a mesh that is known to be manifold; fails the test otherwise.

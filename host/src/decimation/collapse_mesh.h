@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/vec.h>
 
 namespace vkmesh::detail {
 
@@ -24,19 +26,26 @@ class CollapseMesh {
     std::array<std::uint32_t, 4> twin;
   };
 
-  explicit CollapseMesh(const HalfEdgeMesh& mesh)
+  /// A vertex and what is most often asked about it, in one cache line.
+  struct Vertex {
+    Vec3 position;
+    std::uint32_t leading = kInvalid;
+  };
+
+  CollapseMesh(const HalfEdgeMesh& mesh, std::span<const Vec3> positions)
       : face_count_(mesh.face_count()), apex_(static_cast<std::uint32_t>(mesh.vertex_count())) {
     const auto origins = mesh.origins();
     const auto twins = mesh.twins();
     faces_.resize(face_count_ + mesh.boundary_half_edge_count());
-    leading_.assign(mesh.vertex_count(), kInvalid);
+    vertices_.reserve(mesh.vertex_count());
+    for (const Vec3& position : positions) vertices_.push_back({position, kInvalid});
     const auto renumber = [](std::uint32_t h) { return 4 * (h / 3) + h % 3; };
     auto ghost = static_cast<std::uint32_t>(face_count_);
     for (std::uint32_t f = 0; f < face_count_; ++f)
       for (std::uint32_t i = 0; i < 3; ++i) {
         const std::uint32_t h = 4 * f + i, old_twin = twins[3 * f + i];
         faces_[f].origin[i] = origins[3 * f + i];
-        leading_[origins[3 * f + i]] = h;
+        vertices_[origins[3 * f + i]].leading = h;
         if (old_twin != kInvalid) {
           faces_[f].twin[i] = renumber(old_twin);
         } else {
@@ -56,6 +65,7 @@ class CollapseMesh {
     }
   }
 
+  void prefetch(std::uint32_t h) const { __builtin_prefetch(&faces_[h >> 2]); }
   [[nodiscard]] std::uint32_t apex() const { return apex_; }
   [[nodiscard]] std::size_t face_count() const { return face_count_; }
   [[nodiscard]] bool is_ghost(std::uint32_t h) const { return h / 4 >= face_count_; }
@@ -68,7 +78,8 @@ class CollapseMesh {
   /// The next half-edge that leaves the same vertex, counter-clockwise.
   [[nodiscard]] std::uint32_t around_vertex(std::uint32_t h) const { return twin(previous(h)); }
   /// A half-edge that leaves v; kInvalid when v is isolated or was removed.
-  [[nodiscard]] std::uint32_t leading(std::uint32_t v) const { return leading_[v]; }
+  [[nodiscard]] std::uint32_t leading(std::uint32_t v) const { return vertices_[v].leading; }
+  [[nodiscard]] const Vec3& position(std::uint32_t v) const { return vertices_[v].position; }
   [[nodiscard]] bool alive(std::size_t f) const { return faces_[f].origin[0] != kInvalid; }
 
   /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. The link condition must
@@ -82,10 +93,10 @@ class CollapseMesh {
 
     const std::uint32_t a_out = twin(q_to_a), b_out = twin(p_to_b);  // a → q and b → p, which b → q becomes
     const std::uint32_t a = origin(a_to_p), b = origin(b_to_q);
-    leading_[q] = twin(a_to_p);  // p → a, now q → a
-    if (a != apex_) leading_[a] = a_out;
-    if (b != apex_) leading_[b] = b_out;
-    leading_[p] = kInvalid;
+    vertices_[q].leading = twin(a_to_p);  // p → a, now q → a
+    if (a != apex_) vertices_[a].leading = a_out;
+    if (b != apex_) vertices_[b].leading = b_out;
+    vertices_[p].leading = kInvalid;
     set_twins(a_out, twin(a_to_p));
     set_twins(b_out, twin(b_to_q));
     const unsigned own = (is_ghost(h) ? 0u : 1u) + (is_ghost(t) ? 0u : 1u);
@@ -101,7 +112,7 @@ class CollapseMesh {
   }
 
   std::vector<Face> faces_;
-  std::vector<std::uint32_t> leading_;
+  std::vector<Vertex> vertices_;
   std::size_t face_count_ = 0;
   std::uint32_t apex_ = 0;
 };

@@ -37,7 +37,7 @@ class Decimation {
       : options_(options),
         cos_deviation_(std::cos(options.max_normal_deviation)),
         input_(mesh),
-        mesh_(mesh),
+        mesh_(mesh, positions),
         positions_(positions),
         quadrics_(mesh.vertex_count()),
         candidates_(mesh.vertex_count()),
@@ -48,10 +48,8 @@ class Decimation {
   Result<Decimated> run(const Progress& progress) {
     sum_quadrics();
     for (std::uint32_t v = 0; v < positions_.size(); ++v) {
-      const Choice choice = cheapest(v);
-      if (choice.half_edge == kInvalid) continue;
-      candidates_[v].half_edge = choice.half_edge;
-      heap_.append(v, choice.cost);
+      candidates_[v] = cheapest(v);
+      if (candidates_[v].half_edge != kInvalid) heap_.append(v, candidates_[v].cost);
     }
     heap_.heapify();
 
@@ -70,18 +68,16 @@ class Decimation {
   }
 
  private:
+  /// What the heap holds for a vertex.
   struct Candidate {
-    std::uint32_t half_edge = kInvalid;
-    bool held = false;  ///< A cheaper candidate of this vertex was found illegal.
-    bool held_by_error = false;
-  };
-  struct Choice {
-    std::uint32_t half_edge = kInvalid;
+    std::uint32_t half_edge = kInvalid;  ///< Leaves the vertex; kInvalid: none, and the vertex is not in the heap.
+    std::uint32_t towards = kInvalid;    ///< Its target.
     float cost = 0;
+    bool held = false;           ///< A cheaper half-edge of this vertex was found illegal.
+    bool held_by_error = false;  ///< One for its error.
   };
-
   [[nodiscard]] DVec3 offset(std::uint32_t from, std::uint32_t to) const {
-    return DVec3(positions_[to]) - DVec3(positions_[from]);
+    return DVec3(mesh_.position(to)) - DVec3(mesh_.position(from));
   }
 
   void sum_quadrics() {
@@ -104,43 +100,52 @@ class Decimation {
     }
   }
 
-#ifndef MODE
-#define MODE 0
-#endif
+  /// What p → q adds to the sum over all vertices of the quadric at its vertex: of p's planes alone, since q stays.
   [[nodiscard]] float cost(std::uint32_t p, std::uint32_t q) const {
-    double c = quadrics_[p].at(offset(p, q));
-    if (MODE == 0) c += quadrics_[q].constant;
-    if (MODE == 2) c = std::max(0.0, c - quadrics_[p].constant);
-    return static_cast<float>(c);
+    const Quadric& planes = quadrics_[p];
+    return static_cast<float>(std::max(planes.at(offset(p, q)) - planes.constant, 0.0));
   }
 
-  /// The cheapest half-edge that leaves v, legal or not; ties to the smaller.
-  [[nodiscard]] Choice cheapest(std::uint32_t v) const {
-    Choice best;
+  static bool cheaper(const Candidate& a, const Candidate& b) {
+    return a.cost < b.cost || (a.cost == b.cost && a.half_edge < b.half_edge);
+  }
+
+  /// The cheapest half-edge that leaves v, legal or not.
+  [[nodiscard]] Candidate cheapest(std::uint32_t v) const {
+    Candidate best;
+    best.cost = std::numeric_limits<float>::infinity();
     const std::uint32_t start = mesh_.leading(v);
     if (start == kInvalid) return best;
     std::uint32_t h = start;
     do {
       const std::uint32_t q = mesh_.target(h);
       if (q != mesh_.apex()) {
-        const float c = cost(v, q);
-        if (best.half_edge == kInvalid || c < best.cost || (c == best.cost && h < best.half_edge)) best = {h, c};
+        const Candidate candidate{h, q, cost(v, q)};
+        if (cheaper(candidate, best)) best = candidate;
       }
       h = mesh_.around_vertex(h);
     } while (h != start);
     return best;
   }
 
+  void prefetch(std::uint32_t v) const {
+    const char* quadric = reinterpret_cast<const char*>(&quadrics_[v]);
+    __builtin_prefetch(quadric);
+    __builtin_prefetch(quadric + 64);
+    __builtin_prefetch(&candidates_[v]);
+    heap_.prefetch(v);
+  }
+
   void step() {
     const std::uint32_t p = heap_.top();
+    heap_.for_runners_up([&](std::uint32_t v) {
+      prefetch(v);
+      mesh_.prefetch(candidates_[v].half_edge);
+      const std::uint32_t q = candidates_[v].towards;
+      __builtin_prefetch(&mesh_.position(v));
+      __builtin_prefetch(&mesh_.position(q));
+    });
     const std::uint32_t h = candidates_[p].half_edge;
-    if (MODE == 0 || MODE==2) {
-      const float now = cost(p, mesh_.target(h));
-      if (now > heap_.top_priority()) {
-        if (candidates_[p].held) { choose_legal(p); } else reconsider(p);
-        return;
-      }
-    }
     if (judge(h) == Legality::kLegal) {
       collapse(h);
     } else {
@@ -155,27 +160,34 @@ class Decimation {
     std::uint32_t h = start;
     do {
       const std::uint32_t q = mesh_.target(h);
-      if (q != mesh_.apex()) choices_.push_back({h, cost(p, q)});
+      if (q != mesh_.apex()) choices_.push_back({h, q, cost(p, q)});
       h = mesh_.around_vertex(h);
     } while (h != start);
-    std::sort(choices_.begin(), choices_.end(), [](const Choice& a, const Choice& b) {
-      return a.cost < b.cost || (a.cost == b.cost && a.half_edge < b.half_edge);
-    });
-    Candidate& candidate = candidates_[p];
-    candidate.held = true;
-    for (const Choice& choice : choices_) {
+    std::sort(choices_.begin(), choices_.end(), cheaper);
+    Candidate settled;
+    settled.held = true;
+    for (const Candidate& choice : choices_) {
       const Legality legality = judge(choice.half_edge);
       if (legality == Legality::kLegal) {
-        candidate.half_edge = choice.half_edge;
-        heap_.set(p, choice.cost);
-        return;
+        settled.half_edge = choice.half_edge;
+        settled.towards = choice.towards;
+        settled.cost = choice.cost;
+        break;
       }
       if (legality == Legality::kLink) ++rejected_link_;
       if (legality == Legality::kFoldOver) ++rejected_fold_over_;
-      if (legality == Legality::kError) candidate.held_by_error = true;
+      if (legality == Legality::kError) settled.held_by_error = true;
     }
-    candidate.half_edge = kInvalid;
-    heap_.remove(p);
+    settle(p, settled);
+  }
+
+  void settle(std::uint32_t v, const Candidate& candidate) {
+    candidates_[v] = candidate;
+    if (candidate.half_edge == kInvalid) {
+      heap_.remove(v);
+    } else {
+      heap_.set(v, candidate.cost);
+    }
   }
 
   [[nodiscard]] double error_of(std::uint32_t p, std::uint32_t q) const {
@@ -194,9 +206,12 @@ class Decimation {
     // do not close the four vertices to a tetrahedron.
     if (a == b) return Legality::kLink;
     ring_.clear();
+    spokes_.clear();
     const std::uint32_t stamp = ++stamp_;
     for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out)) {
+      spokes_.push_back(out);
       ring_.push_back(mesh_.target(out));
+      if (ring_.back() != mesh_.apex()) prefetch(ring_.back());
       marks_[ring_.back()] = stamp;
     }
     std::size_t shared = 0, valence = 1;
@@ -238,47 +253,28 @@ class Decimation {
 
   void collapse(std::uint32_t h) {
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
-    const std::uint32_t a_to_p = mesh_.previous(h), b_to_q = mesh_.previous(mesh_.twin(h));
+    const std::uint32_t b_to_q = mesh_.previous(mesh_.twin(h)), b_to_p = mesh_.twin(mesh_.next(mesh_.twin(h)));
+    const std::uint32_t a = mesh_.origin(mesh_.previous(h)), b = mesh_.origin(b_to_q);
     error_ = std::max(error_, error_of(p, q));
     quadrics_[q].add(quadrics_[p], offset(p, q));
-    // judge() left the other neighbours of p in ring_.
     faces_ -= mesh_.collapse(h);
     ++collapses_;
-    heap_.remove(p);
-    for (const std::uint32_t r : ring_) {
+    settle(p, {});
+    // judge() left the other half-edges of p in spokes_; they leave q now. The shape around their targets has changed.
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+      const std::uint32_t r = ring_[i];
       if (r == mesh_.apex()) continue;
-      const std::uint32_t candidate = candidates_[r].half_edge;
-      if (candidates_[r].held || candidate == kInvalid || candidate == a_to_p || candidate == b_to_q ||
-          mesh_.target(candidate) == q) {
-        reconsider(r);
-      } else {
-        const std::uint32_t towards = find(r, q);
-        const float c = cost(r, q);
-        const float current = heap_.priority(r);
-        if (c < current || (c == current && towards < candidate)) {
-          candidates_[r].half_edge = towards;
-          heap_.set(r, c);
-        }
+      Candidate& candidate = candidates_[r];
+      if (candidate.held || candidate.half_edge == kInvalid || candidate.towards == p) {
+        settle(r, cheapest(r));
+      } else if (candidate.half_edge == b_to_q) {
+        candidate.half_edge = b_to_p;  // which took its place
+      } else if (r != a && r != b) {
+        const Candidate towards_q{mesh_.twin(spokes_[i]), q, cost(r, q)};
+        if (cheaper(towards_q, candidate)) settle(r, towards_q);
       }
     }
-    reconsider(q);
-  }
-
-  /// The half-edge r → q, which exists.
-  [[nodiscard]] std::uint32_t find(std::uint32_t r, std::uint32_t q) const {
-    std::uint32_t h = mesh_.leading(r);
-    while (mesh_.target(h) != q) h = mesh_.around_vertex(h);
-    return h;
-  }
-
-  void reconsider(std::uint32_t v) {
-    const Choice choice = cheapest(v);
-    candidates_[v] = {choice.half_edge, false, false};
-    if (choice.half_edge == kInvalid) {
-      heap_.remove(v);
-    } else {
-      heap_.set(v, choice.cost);
-    }
+    settle(q, cheapest(q));
   }
 
   [[nodiscard]] Result<Decimated> finish(std::size_t target) const {
@@ -330,7 +326,8 @@ class Decimation {
   AddressableHeap<> heap_;
   std::size_t faces_;
   std::vector<std::uint32_t> ring_;
-  std::vector<Choice> choices_;
+  std::vector<std::uint32_t> spokes_;
+  std::vector<Candidate> choices_;
   std::uint32_t stamp_ = 0;
   std::size_t collapses_ = 0;
   std::size_t rejected_link_ = 0;

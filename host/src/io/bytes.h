@@ -66,7 +66,7 @@ class Output {
 
   /// Room for `count` bytes (at most kRoom) at the end of what was put; commit() takes over those used.
   char* room(std::size_t count) {
-    if (used_ + count > buffer_.size()) flush();
+    if (buffer_.size() - used_ < count) flush();
     return buffer_.data() + used_;
   }
   void commit(const char* end) { used_ = static_cast<std::size_t>(end - buffer_.data()); }
@@ -78,6 +78,7 @@ class Output {
   static constexpr std::size_t kRoom = 4096;
 
  private:
+  Output(std::vector<std::byte>* memory, int file, std::string name, bool gzip);
   void flush();
   void deflate_buffer(int mode);
   void pass_on(const char* bytes, std::size_t count);

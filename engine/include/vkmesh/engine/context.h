@@ -106,9 +106,6 @@ class Context {
   [[nodiscard]] const DeviceInfo& info() const;
   /// Bytes of device memory that buffers of this context hold now.
   [[nodiscard]] std::uint64_t allocated_bytes() const;
-  /// Bytes of device-local memory still free, as far as the driver tells (VK_EXT_memory_budget is not
-  /// required, so this is the largest heap's size less allocated_bytes()).
-  [[nodiscard]] std::uint64_t available_bytes() const;
   /// Takes the validation messages gathered since the last call.
   [[nodiscard]] std::vector<std::string> take_validation_messages();
 

@@ -29,16 +29,16 @@ inline constexpr float kMaxCoordinate = 1152921504606846976.0f;
 /// 1 / x for x in [2^-100, 2^100], within 2 ULP: Newton's iteration from an integer seed.
 [[nodiscard]] inline float reciprocal(float x) {
   float y = std::bit_cast<float>(VKMESH_RECIPROCAL_SEED - std::bit_cast<std::uint32_t>(x));
-  for (int i = 0; i < 4; ++i) y = y * (2.0f - x * y);
-  return y;
+  for (int i = 0; i < 3; ++i) y = y * (2.0f - x * y);
+  return y + y * (1.0f - x * y);
 }
 
 /// 1 / √x for x in [2^-122, 2^100], within 2 ULP: Newton's iteration from an integer seed.
 [[nodiscard]] inline float reciprocal_root(float x) {
   float y = std::bit_cast<float>(VKMESH_RECIPROCAL_ROOT_SEED - (std::bit_cast<std::uint32_t>(x) >> 1));
   const float half = 0.5f * x;
-  for (int i = 0; i < 4; ++i) y = y * (1.5f - (half * y) * y);
-  return y;
+  for (int i = 0; i < 3; ++i) y = y * (1.5f - (half * y) * y);
+  return y + y * (0.5f - (half * y) * y);
 }
 
 /// √x for x = 0 or x in [2^-122, 2^100], within 2 ULP.

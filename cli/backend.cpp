@@ -1,0 +1,72 @@
+#include "backend.h"
+
+#include <utility>
+
+#include <vkmesh/node_neighbours.h>
+#include <vkmesh/passes/dihedral_angles.h>
+#include <vkmesh/passes/vertex_normals.h>
+
+namespace vkmesh::cli {
+namespace {
+
+class HostBackend : public Backend {
+ public:
+  explicit HostBackend(Job& job) : job_(job) {}
+
+  Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
+                                           std::span<const Vec3> positions) override {
+    return job_.timed("compute", [&] { return vkmesh::vertex_normals(mesh, positions); });
+  }
+
+  Result<std::vector<float>> largest_dihedral_angles(const HalfEdgeMesh& mesh,
+                                                     std::span<const Vec3> positions) override {
+    VKMESH_TRY(DihedralAngles angles,
+               job_.timed("compute", [&] { return dihedral_angles(mesh, positions); }));
+    return std::move(angles.vertex_maximum);
+  }
+
+  Result<std::vector<Vec3>> laplacian_smoothing(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                                const LaplacianSmoothingOptions& options) override {
+    return job_.timed("compute", [&]() -> Result<std::vector<Vec3>> {
+      VKMESH_TRY(const NodeNeighbours neighbours, node_neighbours(mesh));
+      return vkmesh::laplacian_smoothing(neighbours, positions, options, job_.progress("smoothing"));
+    });
+  }
+
+ private:
+  Job& job_;
+};
+
+void report_host(Job& job, const char* why) {
+  job.json()["device"] = {{"name", "cpu"}, {"driver", "vkmesh " VKMESH_VERSION}, {"type", "host"}};
+  job.row("device", std::string("cpu") + why);
+}
+
+}  // namespace
+
+void use_host(Job& job) {
+  const std::string& asked = job.options().device;
+  report_host(job, "");
+  if (asked != "auto" && asked != "cpu")
+    job.note("this subcommand runs on the host: the device " + asked + " was not used");
+}
+
+Result<std::unique_ptr<Backend>> open_backend(Job& job) {
+  const std::string& asked = job.options().device;
+  const char* why = "";
+  if (asked != "cpu") {
+#ifdef VKMESH_HAS_VULKAN
+    auto vulkan = open_vulkan_backend(job, asked);
+    if (vulkan || asked != "auto" || vulkan.error().code != ErrorCode::kNoDevice) return vulkan;
+    why = " (no GPU)";
+#else
+    if (asked != "auto")
+      return fail(ErrorCode::kNoDevice,
+                  "there is no device " + asked + ": this program was built without Vulkan");
+#endif
+  }
+  report_host(job, why);
+  return std::make_unique<HostBackend>(job);
+}
+
+}  // namespace vkmesh::cli

@@ -1,0 +1,23 @@
+// The engine's own kernels: shaders/*.comp, compiled and embedded by the build.
+#pragma once
+
+#include <span>
+
+#include <vkmesh/engine/kernel.h>
+
+#include "params.h"
+
+namespace vkmesh::detail {
+
+/// Every embedded kernel.
+[[nodiscard]] std::span<const KernelSource> embedded_kernels();
+
+[[nodiscard]] const KernelSource& canary_kernel();
+[[nodiscard]] const KernelSource& dihedral_angles_kernel();
+[[nodiscard]] const KernelSource& laplacian_smoothing_kernel();
+[[nodiscard]] const KernelSource& triangle_areas_kernel();
+[[nodiscard]] const KernelSource& triangle_normals_kernel();
+[[nodiscard]] const KernelSource& vertex_maxima_kernel();
+[[nodiscard]] const KernelSource& vertex_normals_kernel();
+
+}  // namespace vkmesh::detail

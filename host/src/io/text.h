@@ -1,0 +1,134 @@
+// Reading numbers and words from text in memory, with a place to point at when they are wrong.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+
+namespace vkmesh::detail {
+
+/// Walks over text. Locale plays no part. Blanks are space, tab, vertical tab and form feed; a line ends at a line feed
+/// or a carriage return, so that the pair of both is a line and an empty one. The parse functions return false where
+/// the text is something else and leave the place at its start; found() then says what is there.
+class TextCursor {
+ public:
+  /// `comment` begins a comment that runs to the end of its line; 0 for none.
+  explicit TextCursor(std::string_view text, char comment = 0)
+      : at_(text.data()), end_(text.data() + text.size()), comment_(comment) {}
+
+  [[nodiscard]] const char* at() const { return at_; }
+  [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+  [[nodiscard]] bool at_end() const { return at_ == end_; }
+  [[nodiscard]] bool at_line_end() const { return at_ == end_ || ends_line(*at_); }
+
+  /// Blanks, and a comment, within the line.
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (comment_ != 0 && at_ != end_ && *at_ == comment_) skip_to_line_end();
+  }
+
+  /// Blanks, comments and line ends: to the next content, or the end of the text.
+  void skip_to_content() {
+    for (skip_blanks(); at_ != end_ && ends_line(*at_); skip_blanks()) ++at_;
+  }
+
+  void skip_to_line_end() {
+    while (at_ != end_ && !ends_line(*at_)) ++at_;
+  }
+
+  /// Skips `c` if it stands here.
+  bool accept(char c) {
+    if (at_ == end_ || *at_ != c) return false;
+    ++at_;
+    return true;
+  }
+
+  /// A run of characters that are neither blank nor line end nor comment; empty where there is none.
+  std::string_view word() {
+    skip_blanks();
+    const char* from = at_;
+    while (at_ != end_ && !is_blank(*at_) && !ends_line(*at_) && (comment_ == 0 || *at_ != comment_)) ++at_;
+    return {from, static_cast<std::size_t>(at_ - from)};
+  }
+
+  /// The next number of the line, which must end where a number ends. T is an integer or float type; floats too small
+  /// become 0 or subnormal, floats too large are refused.
+  template <class T>
+  bool number(T& value) {
+    const char* from = at_;
+    if (number_prefix(value) && is_separator()) return true;
+    at_ = from;
+    skip_blanks();
+    return false;
+  }
+
+  /// The same, whatever follows ("12/7").
+  template <class T>
+  bool number_prefix(T& value) {
+    skip_blanks();
+    const char* from = at_;
+    if (from != end_ && *from == '+' && from + 1 != end_ && from[1] != '-' && from[1] != '+') ++from;
+    const auto [to, code] = std::from_chars(from, end_, value);
+    if (code == std::errc{}) {
+      at_ = to;
+      return true;
+    }
+    if constexpr (std::is_floating_point_v<T>)
+      if (code == std::errc::result_out_of_range) return tiny_number(from, value);
+    return false;
+  }
+
+  /// True at the end of the line, blanks and comment skipped.
+  bool line_done() {
+    skip_blanks();
+    return at_line_end();
+  }
+
+  /// What stands here, for a message: "'abc'", "the end of the line", "the end of the file".
+  [[nodiscard]] std::string found() const {
+    if (at_ == end_) return "the end of the file";
+    if (ends_line(*at_) || (comment_ != 0 && *at_ == comment_)) return "the end of the line";
+    constexpr std::size_t kShown = 24;
+    std::string text = "'";
+    const char* p = at_;
+    for (; p != end_ && !is_blank(*p) && !ends_line(*p) && static_cast<std::size_t>(p - at_) < kShown; ++p) {
+      constexpr char kHex[] = "0123456789abcdef";
+      const auto c = static_cast<unsigned char>(*p);
+      if (c >= 0x20 && c < 0x7f)
+        text += *p;
+      else
+        text += {'\\', 'x', kHex[c >> 4], kHex[c & 15]};
+    }
+    return text + (p != end_ && static_cast<std::size_t>(p - at_) == kShown ? "…'" : "'");
+  }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+  static bool ends_line(char c) { return c == '\n' || c == '\r'; }
+  bool is_separator() const {
+    return at_ == end_ || is_blank(*at_) || ends_line(*at_) || (comment_ != 0 && *at_ == comment_);
+  }
+
+  /// A number that its type cannot hold: too small is 0 (or the nearest subnormal), too large is refused.
+  template <class T>
+  bool tiny_number(const char* from, T& value) {
+    long double wide = 0;
+    const auto [to, code] = std::from_chars(from, end_, wide);
+    if (code != std::errc{} || std::abs(wide) > 1) return false;
+    value = static_cast<T>(wide);
+    at_ = to;
+    return true;
+  }
+
+  const char* at_;
+  const char* end_;
+  char comment_;
+};
+
+}  // namespace vkmesh::detail

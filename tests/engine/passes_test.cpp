@@ -1,0 +1,151 @@
+// Every pass on the device against its CPU reference, bit for bit. (tests/host/passes_test.cpp checks the
+// reference.)
+#include <algorithm>
+#include <bit>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/consolidate.h>
+#include <vkmesh/engine/device_mesh.h>
+#include <vkmesh/engine/dihedral_angles.h>
+#include <vkmesh/engine/laplacian_smoothing.h>
+#include <vkmesh/engine/recorder.h>
+#include <vkmesh/engine/vertex_normals.h>
+#include <vkmesh/io/mesh_io.h>
+#include <vkmesh/passes/dihedral_angles.h>
+#include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/vertex_normals.h>
+
+#include "support/data.h"
+#include "support/device.h"
+#include "support/shapes.h"
+
+using namespace vkmesh;
+
+namespace {
+
+constexpr MeshPasses kAllPasses = {
+    .vertex_normals = true, .laplacian_smoothing = true, .dihedral_angles = true};
+
+// The number of places where two arrays differ in any bit, plus the difference in their lengths.
+std::size_t differences(std::span<const float> a, std::span<const float> b) {
+  std::size_t count = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    count += std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i]);
+  return count;
+}
+
+std::size_t differences(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return differences(std::span(a.empty() ? nullptr : &a[0].x, 3 * a.size()),
+                     std::span(b.empty() ? nullptr : &b[0].x, 3 * b.size()));
+}
+
+void require_done(const Result<void>& result) {
+  if (!result) FAIL(result.error().describe());
+}
+
+template <class T>
+T require(Result<T> result) {
+  if (!result) FAIL(result.error().describe());
+  return *std::move(result);
+}
+
+// Runs all passes on both sides and compares every output.
+void check_exact(const IndexedFaceSet& set) {
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  Context& context = test::test_context();
+  for (const LaplacianSmoothingOptions& options :
+       {LaplacianSmoothingOptions{.lambda = 0.5f, .iterations = 1, .fix_boundary = true},
+        LaplacianSmoothingOptions{.lambda = 0.37f, .iterations = 10, .fix_boundary = false}}) {
+    DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points, kAllPasses));
+    Recorder recorder = require(Recorder::create(context));
+    require_done(record_vertex_normals(recorder, device));
+    require_done(record_dihedral_angles(recorder, device));
+    require_done(record_laplacian_smoothing(recorder, device, options));
+    require_done(recorder.submit_and_wait());
+
+    const DihedralAngles angles = require(dihedral_angles(mesh, set.points));
+    CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, set.points))) ==
+          0);
+    CHECK(differences(require(device.download_half_edge_angles()), angles.half_edge) == 0);
+    CHECK(differences(require(device.download_vertex_maxima()), angles.vertex_maximum) == 0);
+    CHECK(differences(require(device.download_positions()),
+                      require(laplacian_smoothing(require(node_neighbours(mesh)), set.points, options))) ==
+          0);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("passes equal their references bit for bit on shapes, noisy and scaled") {
+  std::vector<IndexedFaceSet> shapes = {test::tetrahedron(), test::cube(),       test::icosphere(4),
+                                        test::torus(50, 31), test::grid(33, 17), test::cylinder(9, 11)};
+  for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+    check_exact(shapes[i]);
+    test::jitter(shapes[i], 0.05f, i);
+    check_exact(shapes[i]);
+    for (Vec3& p : shapes[i].points) p *= 0x1p-45f;
+    check_exact(shapes[i]);
+    for (Vec3& p : shapes[i].points) p *= 0x1p95f;
+    check_exact(shapes[i]);
+  }
+}
+
+TEST_CASE("passes equal their references where lengths vanish: subnormal, coincident and collinear points") {
+  IndexedFaceSet set = test::icosphere(3);
+  std::mt19937 random(17);
+  for (Vec3& p : set.points)
+    for (int k = 0; k < 3; ++k) {
+      const int exponent = static_cast<int>(random() % 150u) - 149;
+      p[k] = std::ldexp(p[k], exponent);
+    }
+  check_exact(set);
+  for (Vec3& p : set.points) p.y = p.x;
+  check_exact(set);
+  for (Vec3& p : set.points) p = Vec3(0.25f);
+  check_exact(set);
+}
+
+TEST_CASE("passes leave isolated vertices alone, and take a mesh without faces and an empty one") {
+  IndexedFaceSet set = test::grid(3, 3);
+  set.points.insert(set.points.begin(), Vec3(5.0f, 6.0f, 7.0f));
+  for (auto& c : set.corners) ++c;
+  check_exact(set);
+  set.corners.clear();
+  check_exact(set);
+  set.points.clear();
+  check_exact(set);
+}
+
+TEST_CASE("passes equal their references bit for bit on the dragon") {
+  const IndexedFaceSet set = require(to_indexed_face_set(require(read_mesh(test::dragon()))));
+  CHECK(set.face_count() == 871414);
+  check_exact(set);
+}
+
+TEST_CASE("normals after smoothing in one submission are those of the smoothed positions") {
+  IndexedFaceSet set = test::icosphere(3);
+  test::jitter(set, 0.05f, 1);
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  const LaplacianSmoothingOptions options{.lambda = 0.6f, .iterations = 7};
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, set.points, kAllPasses));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  require_done(record_laplacian_smoothing(recorder, device, options));
+  require_done(record_vertex_normals(recorder, device));
+  require_done(recorder.submit_and_wait());
+  const auto smoothed = require(laplacian_smoothing(require(node_neighbours(mesh)), set.points, options));
+  CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, smoothed))) == 0);
+}
+
+TEST_CASE("smoothing on the device: λ out of range and passes that the mesh was not made for are errors") {
+  const IndexedFaceSet set = test::cube();
+  DeviceMesh device = require(
+      DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, {.vertex_normals = true}));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  CHECK(record_laplacian_smoothing(recorder, device, {}).error().code == ErrorCode::kUsage);
+  CHECK(record_dihedral_angles(recorder, device).error().code == ErrorCode::kUsage);
+  DeviceMesh all =
+      require(DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, kAllPasses));
+  CHECK(record_laplacian_smoothing(recorder, all, {.lambda = 1.5f}).error().code == ErrorCode::kUsage);
+}

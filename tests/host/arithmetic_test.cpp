@@ -1,0 +1,143 @@
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/passes/arithmetic.h>
+
+using namespace vkmesh;
+
+namespace {
+
+// The distance of `actual` from `exact`, in units of the last place of a float near `exact`.
+double ulps(float actual, long double exact) {
+  const float near = static_cast<float>(exact);
+  const float ulp = std::nextafter(std::fabs(near), std::numeric_limits<float>::infinity()) - std::fabs(near);
+  return static_cast<double>(std::fabs(static_cast<long double>(actual) - exact) /
+                             static_cast<long double>(ulp));
+}
+
+// Every float in [low, high] whose bits are a multiple of `stride` above those of `low`.
+template <class F>
+void sweep(float low, float high, std::uint32_t stride, F&& f) {
+  const std::uint32_t last = std::bit_cast<std::uint32_t>(high);
+  for (std::uint64_t bits = std::bit_cast<std::uint32_t>(low); bits <= last; bits += stride)
+    f(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+}
+
+}  // namespace
+
+TEST_CASE("reciprocal is within 2 ULP over its domain") {
+  double worst = 0;
+  sweep(0x1p-100f, 0x1p100f, 97, [&](float x) { worst = std::max(worst, ulps(reciprocal(x), 1.0L / x)); });
+  INFO("worst " << worst);
+  CHECK(worst <= 2.0);
+  for (float n = 1; n <= 1024; n *= 2) CHECK(reciprocal(n) == 1.0f / n);
+}
+
+TEST_CASE("reciprocal root and root are within 2 ULP over their domains") {
+  double worst_reciprocal = 0, worst_root = 0;
+  sweep(0x1p-122f, 0x1p100f, 97, [&](float x) {
+    const long double exact = std::sqrt(static_cast<long double>(x));
+    worst_reciprocal = std::max(worst_reciprocal, ulps(reciprocal_root(x), 1.0L / exact));
+    worst_root = std::max(worst_root, ulps(root(x), exact));
+  });
+  INFO("worst " << worst_reciprocal << " and " << worst_root);
+  CHECK(worst_reciprocal <= 2.0);
+  CHECK(worst_root <= 2.0);
+  CHECK(root(0.0f) == 0.0f);
+}
+
+TEST_CASE("first-quadrant angle is within 4 ULP") {
+  double worst = 0;
+  sweep(0x1p-61f, 0x1p60f, 1009, [&](float y) {
+    for (const float x : {1.0f, 0.7f, 1.9999999f, 0x1p-61f, 0x1p60f})
+      worst = std::max(worst, ulps(first_quadrant_angle(y, x),
+                                   std::atan2(static_cast<long double>(y), static_cast<long double>(x))));
+  });
+  INFO("worst " << worst);
+  CHECK(worst <= 4.0);
+  CHECK(first_quadrant_angle(0.0f, 1.0f) == 0.0f);
+  CHECK(ulps(first_quadrant_angle(1.0f, 0.0f), std::acos(0.0L)) <= 0.5);
+}
+
+TEST_CASE("unit vectors have length 1 and the direction of their argument, from tiny to huge") {
+  std::mt19937 random(3);
+  double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const auto component = [&] {
+      const float mantissa = static_cast<float>(random() >> 8) / 8388608.0f - 1.0f;
+      return mantissa * std::ldexp(1.0f, static_cast<int>(random() % 20u));
+    };
+    const int exponent = static_cast<int>(random() % 200u) - 100;
+    const Vec3 v = Vec3(component(), component(), component()) * std::ldexp(1.0f, exponent);
+    const long double x = v.x, y = v.y, z = v.z, length = std::sqrt(x * x + y * y + z * z);
+    const Vec3 u = unit_vector(v);
+    // Absolute, in units of the last place of 1: a component far below the others has no more to say.
+    for (const auto& [a, b] : {std::pair{u.x, x / length}, {u.y, y / length}, {u.z, z / length}})
+      worst = std::max(worst, static_cast<double>(std::fabs(a - b)) / 0x1p-23);
+  }
+  INFO("worst " << worst);
+  CHECK(worst <= 4.0);
+}
+
+TEST_CASE("unit vectors of zero, infinite and undefined vectors are zero") {
+  const float infinity = std::numeric_limits<float>::infinity(),
+              nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Vec3 v :
+       {Vec3(0.0f), Vec3(-0.0f), Vec3(infinity, 1, 1), Vec3(1, nan, 1), Vec3(0, 0, -infinity)}) {
+    const Vec3 u = unit_vector(v);
+    for (int k = 0; k < 3; ++k) CHECK(std::bit_cast<std::uint32_t>(u[k]) == 0u);
+  }
+}
+
+TEST_CASE("the angle between unit vectors is accurate from flat to folded") {
+  double worst = 0;
+  for (int i = 0; i <= 20000; ++i) {
+    // Angles from 1e-7 to π, dense at both ends.
+    const double t = i / 20000.0, angle = 3.14159 * t * t * (3 - 2 * t) + 1e-7;
+    const Vec3 a = unit_vector(Vec3(0.3f, -0.5f, 0.8f));
+    const Vec3 p = unit_vector(Vec3(0.8f, 0.0f, -0.3f));
+    const Vec3 b =
+        unit_vector(a * static_cast<float>(std::cos(angle)) + p * static_cast<float>(std::sin(angle)));
+    const DVec3 da(a), db(b);
+    const DVec3 c(da.y * db.z - da.z * db.y, da.z * db.x - da.x * db.z, da.x * db.y - da.y * db.x);
+    const double exact =
+        std::atan2(std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z), da.x * db.x + da.y * db.y + da.z * db.z);
+    // The lengths of a and b may be off by 4 ULP each, which turns into as much of the angle at either end.
+    worst = std::max(worst, std::fabs(static_cast<double>(angle_between(a, b)) - exact) / 0x1p-23);
+  }
+  INFO("worst " << worst);
+  CHECK(worst <= 8.0);
+  CHECK(angle_between(Vec3(0, 0, 1), Vec3(0, 0, 1)) == 0.0f);
+  CHECK(angle_between(Vec3(0, 0, 1), Vec3(0, 0, -1)) == 3.14159265f);
+  CHECK(angle_between(Vec3(0.0f), Vec3(0, 0, 1)) == 0.0f);
+}
+
+TEST_CASE("no step of the geometry makes a subnormal: tiny values count as zero") {
+  const float tiny = 0x1p-140f;
+  CHECK(area_vector(Vec3(0.0f), Vec3(tiny, 0, 0), Vec3(0, tiny, 0)) == Vec3(0.0f));
+  CHECK(area_vector(Vec3(0.0f), Vec3(0x1p-51f, 0, 0), Vec3(0, 0x1p-50f, 0)) == Vec3(0.0f));
+  CHECK(area_vector(Vec3(0.0f), Vec3(0x1p-50f, 0, 0), Vec3(0, 0x1p-50f, 0)) == Vec3(0, 0, 0x1p-100f));
+  CHECK(std::signbit(zero_below(-tiny, 0x1p-100f)) == false);
+  CHECK(std::signbit(zero_below(-0.0f, 0x1p-100f)) == false);
+}
+
+TEST_CASE("positions beyond the range of the arithmetic are refused, by vertex") {
+  std::vector<Vec3> positions(3, Vec3(1.0f)), prepared(3);
+  CHECK(prepare_positions(positions, prepared));
+  positions[1] = Vec3(-0.0f, 0x1p-120f, -0x1p-100f);
+  REQUIRE(prepare_positions(positions, prepared));
+  CHECK(prepared[1] == Vec3(0, 0, -0x1p-100f));
+  for (const float bad :
+       {0x1p60f, -0x1p61f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    positions[2] = Vec3(0, bad, 0);
+    const auto result = prepare_positions(positions, prepared);
+    REQUIRE_FALSE(result);
+    CHECK(result.error().code == ErrorCode::kUnsuitable);
+    CHECK_THAT(result.error().message, Catch::Contains("coordinate 1 of vertex 2"));
+  }
+  CHECK(prepare_positions(positions, std::span(prepared).first(2)).error().code == ErrorCode::kUsage);
+}
