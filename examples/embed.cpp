@@ -1,5 +1,5 @@
 // The least an engine does to run a pass: vertex normals of a mesh file, on any Vulkan device.
-//   embed IN [DEVICE]
+//   embed IN [DEVICE]      DEVICE as in ContextOptions::device; default auto
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -8,26 +8,27 @@
 #include <vkmesh/engine/vertex_normals.h>
 #include <vkmesh/io/mesh_io.h>
 
+using namespace vkmesh;
+
 // [readme]
-vkmesh::Result<std::vector<vkmesh::Vec3>> normals_of(const char* path, const std::string& device) {
-  VKMESH_TRY(vkmesh::MeshFile file, vkmesh::read_mesh(path));
-  VKMESH_TRY(auto mesh, vkmesh::to_indexed_face_set(std::move(file)));
-  VKMESH_TRY(auto half_edges, vkmesh::consolidate(mesh));
-  vkmesh::ContextOptions options;
-  options.device = device;
-  VKMESH_TRY(auto context, vkmesh::Context::create(options));
-  VKMESH_TRY(auto on_device,
-             vkmesh::DeviceMesh::create(*context, half_edges.mesh, mesh.points, {.vertex_normals = true}));
-  VKMESH_TRY(auto recorder, vkmesh::Recorder::create(*context));
-  VKMESH_CHECK(vkmesh::record_vertex_normals(recorder, on_device));
+Result<std::vector<Vec3>> normals_of(const char* path, const ContextOptions& options) {
+  VKMESH_TRY(MeshFile file, read_mesh(path));
+  VKMESH_TRY(IndexedFaceSet mesh, to_indexed_face_set(std::move(file)));
+  VKMESH_TRY(Consolidated made, consolidate(mesh));
+  VKMESH_TRY(auto context, Context::create(options));
+  VKMESH_TRY(auto device, DeviceMesh::create(*context, made.mesh, mesh.points, {.vertex_normals = true}));
+  VKMESH_TRY(auto recorder, Recorder::create(*context));
+  VKMESH_CHECK(record_vertex_normals(recorder, device));
   VKMESH_CHECK(recorder.submit_and_wait());
-  return on_device.download_vertex_normals();
+  return device.download_vertex_normals();
 }
 // [readme]
 
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: embed IN [DEVICE]\n"), 2;
-  const auto normals = normals_of(argv[1], argc > 2 ? argv[2] : "auto");
+  ContextOptions options;
+  if (argc > 2) options.device = argv[2];
+  const auto normals = normals_of(argv[1], options);
   if (!normals) {
     std::fprintf(stderr, "embed: %s\n", normals.error().describe().c_str());
     return static_cast<int>(normals.error().code);

@@ -11,24 +11,61 @@ vec3 zero_below(vec3 v, float limit) {
   return vec3(zero_below(v.x, limit), zero_below(v.y, limit), zero_below(v.z, limit));
 }
 
+float residual(float x, float a, float b) {
+  float ah = uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u);
+  float bh = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
+  precise float al = a - ah;
+  precise float bl = b - bh;
+  precise float r = (((x - ah * bh) - ah * bl) - al * bh) - al * bl;
+  return r;
+}
+
+float rough_reciprocal_root(float m) {
+  precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_ROOT_SEED - (floatBitsToUint(m) >> 1));
+  precise float half_m = 0.5 * m;
+  for (int i = 0; i < 3; ++i) y = y * (1.5 - (half_m * y) * y);
+  return y;
+}
+
+float even_mantissa(uint x) {
+  return uintBitsToFloat((x & 0x007fffffu) | ((x & 0x00800000u) != 0u ? 0x3f800000u : 0x40000000u));
+}
+
 float reciprocal(float x) {
-  precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_SEED - floatBitsToUint(x));
-  for (int i = 0; i < 3; ++i) y = y * (2.0 - x * y);
-  precise float refined = y + y * (1.0 - x * y);
-  return refined;
+  uint magnitude = floatBitsToUint(x) & 0x7fffffffu;
+  uint exponent = magnitude >> 23;
+  float m = uintBitsToFloat((magnitude & 0x007fffffu) | 0x3f800000u);
+  precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_SEED - floatBitsToUint(m));
+  for (int i = 0; i < 3; ++i) y = y * (2.0 - m * y);
+  y = y + y * residual(1.0, m, y);
+  uint result = floatBitsToUint(y) + (127u << 23) - (exponent << 23);
+  bool defined = exponent - 1u < 253u && (result & 0x7f800000u) != 0u;
+  return defined ? uintBitsToFloat(result | (floatBitsToUint(x) & 0x80000000u)) : 0.0;
 }
 
 float reciprocal_root(float x) {
-  precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_ROOT_SEED - (floatBitsToUint(x) >> 1));
-  precise float half_x = 0.5 * x;
-  for (int i = 0; i < 3; ++i) y = y * (1.5 - (half_x * y) * y);
-  precise float refined = y + y * (0.5 - (half_x * y) * y);
-  return refined;
+  uint b = floatBitsToUint(x);
+  uint exponent = b >> 23;
+  float m = even_mantissa(b);
+  float y = rough_reciprocal_root(m);
+  precise float square = y * y;
+  precise float r = residual(1.0, m, square) + m * residual(square, y, y);
+  precise float refined = y + y * (0.5 * r);
+  return exponent - 1u < 254u
+             ? uintBitsToFloat(floatBitsToUint(refined) + (127u << 23) - (((exponent + 127u) >> 1) << 23))
+             : 0.0;
 }
 
 float root(float x) {
-  precise float r = x * reciprocal_root(x);
-  return x == 0.0 ? 0.0 : r;
+  uint b = floatBitsToUint(x);
+  uint exponent = b >> 23;
+  float m = even_mantissa(b);
+  float y = rough_reciprocal_root(m);
+  precise float s = m * y;
+  precise float refined = s + (0.5 * y) * residual(m, s, s);
+  return exponent - 1u < 254u
+             ? uintBitsToFloat(floatBitsToUint(refined) - (127u << 23) + (((exponent + 127u) >> 1) << 23))
+             : 0.0;
 }
 
 float first_quadrant_angle(float y, float x) {

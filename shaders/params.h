@@ -74,6 +74,16 @@ struct VertexMaximaParams {
   VKMESH_FLOATS maxima;          ///< 1 a vertex: written
 };
 
+/// canary.comp: i is a case.
+struct CanaryParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS inputs;   ///< VKMESH_CANARY_INPUTS a case
+  VKMESH_FLOATS results;  ///< VKMESH_CANARY_RESULTS a case: written
+};
+#define VKMESH_CANARY_INPUTS 9
+#define VKMESH_CANARY_RESULTS 16
+
 #ifdef __cplusplus
 }  // namespace vkmesh::kernels
 #endif

@@ -1,11 +1,10 @@
-#include <vkmesh/engine/buffer.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <optional>
 #include <utility>
 
+#include <vkmesh/engine/buffer.h>
 #include <vkmesh/engine/recorder.h>
 
 #include "catching.h"
@@ -16,14 +15,18 @@ namespace {
 
 /// Memory properties to ask for, the best first.
 std::span<const VkMemoryPropertyFlags> preferences(BufferMemory memory) {
-  // Memory of the device is mapped only where the host reads it through its cache: elsewhere staging is faster.
-  static constexpr VkMemoryPropertyFlags kDevice[] = {
-      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
-      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
+  // Memory of the device is mapped only where the host reads it through its cache: elsewhere staging is
+  // faster.
+  static constexpr VkMemoryPropertyFlags kDevice[] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
+                                                          VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+                                                      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
   static constexpr VkMemoryPropertyFlags kStaging[] = {
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT};
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT};
   static constexpr VkMemoryPropertyFlags kReadback[] = {
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT};
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT};
   switch (memory) {
     case BufferMemory::kStaging:
       return kStaging;
@@ -35,27 +38,31 @@ std::span<const VkMemoryPropertyFlags> preferences(BufferMemory memory) {
   return kDevice;
 }
 
-std::optional<std::uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& properties, std::uint32_t allowed,
-                                         BufferMemory memory) {
+std::optional<std::uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& properties,
+                                         std::uint32_t allowed, BufferMemory memory) {
   for (const VkMemoryPropertyFlags wanted : preferences(memory))
     for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i)
-      if (((allowed >> i) & 1u) != 0 && (properties.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+      if (((allowed >> i) & 1u) != 0 && (properties.memoryTypes[i].propertyFlags & wanted) == wanted)
+        return i;
   return std::nullopt;
 }
 
 tl::unexpected<Error> does_not_fit(const std::string& name, std::uint64_t bytes, std::uint64_t held) {
-  return fail(ErrorCode::kOutOfMemory, "device memory ran out: buffer '" + name + "' needs " + std::to_string(bytes) +
-                                           " bytes beside the " + std::to_string(held) + " in use");
+  return fail(ErrorCode::kOutOfMemory, "device memory ran out: buffer '" + name + "' needs " +
+                                           std::to_string(bytes) + " bytes beside the " +
+                                           std::to_string(held) + " in use");
 }
 
 }  // namespace
 
-Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemory memory, const std::string& name) {
+Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemory memory,
+                              const std::string& name) {
   return detail::catching([&]() -> Result<Buffer> {
     detail::Device& device = context.device();
     const auto& vk = device.functions;
     const std::uint64_t held = device.allocated.load();
-    // Drivers in software promise more than there is, and end the process when it is touched: so we count ourselves.
+    // Drivers in software promise more than there is, and end the process when it is touched: so we count
+    // ourselves.
     if (bytes > device.max_allocation ||
         (memory == BufferMemory::kDevice && (held > device.info.memory || bytes > device.info.memory - held)))
       return does_not_fit(name, bytes, held);
@@ -90,13 +97,16 @@ Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemor
 
     const VkMemoryPropertyFlags properties = device.memory.memoryTypes[*type].propertyFlags;
     buffer.coherent_ = (properties & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT) != 0;
-    const bool fast_for_host = (properties & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0 && !device.options.force_staging;
-    if ((properties & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 && (memory != BufferMemory::kDevice || fast_for_host)) {
+    const bool fast_for_host =
+        (properties & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0 && !device.options.force_staging;
+    if ((properties & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 &&
+        (memory != BufferMemory::kDevice || fast_for_host)) {
       void* mapped = nullptr;
       VKMESH_VK(vk.vkMapMemory(device.handle, buffer.memory_, 0, VK_WHOLE_SIZE, 0, &mapped), what);
       buffer.mapped_ = static_cast<std::byte*>(mapped);
     }
-    const VkBufferDeviceAddressInfo address{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr, buffer.buffer_};
+    const VkBufferDeviceAddressInfo address{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr,
+                                            buffer.buffer_};
     buffer.address_ = vk.vkGetBufferDeviceAddress(device.handle, &address);
     return buffer;
   });
@@ -126,7 +136,9 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   return *this;
 }
 
-Buffer::~Buffer() { destroy(); }
+Buffer::~Buffer() {
+  destroy();
+}
 
 void Buffer::destroy() noexcept {
   if (context_ == nullptr) return;
@@ -163,7 +175,8 @@ Result<void> Buffer::upload(std::span<const std::byte> data, std::uint64_t offse
       std::memcpy(mapped_ + offset, data.data(), data.size());
       return flush();
     }
-    const std::uint64_t round = std::min<std::uint64_t>(data.size(), context_->device().options.staging_bytes);
+    const std::uint64_t round =
+        std::min<std::uint64_t>(data.size(), context_->device().options.staging_bytes);
     VKMESH_TRY(Buffer staging, create(*context_, round, BufferMemory::kStaging, "staging"));
     for (std::uint64_t done = 0; done < data.size(); done += round) {
       const std::uint64_t bytes = std::min<std::uint64_t>(round, data.size() - done);
@@ -187,7 +200,8 @@ Result<void> Buffer::download(std::span<std::byte> data, std::uint64_t offset) c
       std::memcpy(data.data(), mapped_ + offset, data.size());
       return {};
     }
-    const std::uint64_t round = std::min<std::uint64_t>(data.size(), context_->device().options.staging_bytes);
+    const std::uint64_t round =
+        std::min<std::uint64_t>(data.size(), context_->device().options.staging_bytes);
     VKMESH_TRY(const Buffer staging, create(*context_, round, BufferMemory::kReadback, "readback"));
     for (std::uint64_t done = 0; done < data.size(); done += round) {
       const std::uint64_t bytes = std::min<std::uint64_t>(round, data.size() - done);

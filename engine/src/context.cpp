@@ -5,7 +5,9 @@
 
 namespace vkmesh {
 
-std::uint32_t required_api_version() { return VK_API_VERSION_1_2; }
+std::uint32_t required_api_version() {
+  return VK_API_VERSION_1_2;
+}
 
 VkPhysicalDeviceVulkan12Features required_features() {
   VkPhysicalDeviceVulkan12Features features{};
@@ -14,7 +16,9 @@ VkPhysicalDeviceVulkan12Features required_features() {
   return features;
 }
 
-std::span<const char* const> required_extensions() { return {}; }
+std::span<const char* const> required_extensions() {
+  return {};
+}
 
 Result<std::vector<DeviceInfo>> list_devices(const ContextOptions& options) {
   return detail::catching([&]() -> Result<std::vector<DeviceInfo>> {
@@ -52,7 +56,8 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
     info.enabledExtensionCount = static_cast<std::uint32_t>(required_extensions().size());
     info.ppEnabledExtensionNames = required_extensions().data();
     device->instance = std::move(instance);
-    const VkResult created = device->instance_functions.vkCreateDevice(physical.handle, &info, nullptr, &device->handle);
+    const VkResult created =
+        device->instance_functions.vkCreateDevice(physical.handle, &info, nullptr, &device->handle);
     if (created != VK_SUCCESS) {
       device->handle = VK_NULL_HANDLE;
       tl::unexpected<Error> failure = detail::vulkan_failure(created, "opening " + physical.info.name);
@@ -97,9 +102,13 @@ Result<std::unique_ptr<Context>> Context::adopt(const AdoptedDevice& adopted, co
   });
 }
 
-const DeviceInfo& Context::info() const { return device_->info; }
+const DeviceInfo& Context::info() const {
+  return device_->info;
+}
 
-std::uint64_t Context::allocated_bytes() const { return device_->allocated.load(); }
+std::uint64_t Context::allocated_bytes() const {
+  return device_->allocated.load();
+}
 
 std::vector<std::string> Context::take_validation_messages() {
   if (!device_->instance || !device_->instance->messages) return {};

@@ -22,14 +22,16 @@ Result<bool> has_validation_layer(const LoaderFunctions& loader) {
   VKMESH_VK(loader.vkEnumerateInstanceLayerProperties(&count, nullptr), "listing the Vulkan layers");
   std::vector<VkLayerProperties> layers(count);
   VKMESH_VK(loader.vkEnumerateInstanceLayerProperties(&count, layers.data()), "listing the Vulkan layers");
-  return std::any_of(layers.begin(), layers.end(),
-                     [](const VkLayerProperties& l) { return std::strcmp(l.layerName, kValidationLayer) == 0; });
+  return std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& l) {
+    return std::strcmp(l.layerName, kValidationLayer) == 0;
+  });
 }
 
 }  // namespace
 
 void MessageLog::add(const char* message) noexcept {
-  // Runs inside a driver's call stack, where no exception may pass. A message that no memory is left for is dropped.
+  // Runs inside a driver's call stack, where no exception may pass. A message that no memory is left for is
+  // dropped.
   try {
     const std::lock_guard lock(mutex_);
     messages_.emplace_back(message);
@@ -50,17 +52,18 @@ Result<std::unique_ptr<Instance>> Instance::create(const ContextOptions& options
   if (loader.vkEnumerateInstanceVersion == nullptr)
     return fail(ErrorCode::kNoDevice, "the Vulkan loader is of version 1.0; the engine needs 1.1 or later");
 
-  VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, nullptr, 0, "vkmesh", 0,
-                                required_api_version()};
+  VkApplicationInfo application{
+      VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, nullptr, 0, "vkmesh", 0, required_api_version()};
   VkInstanceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
 
   VkDebugUtilsMessengerCreateInfoEXT messenger{};
   VkValidationFeaturesEXT validation{};
-  const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
-                                                  VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
-                                                  VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
+  const VkValidationFeatureEnableEXT enabled[] = {
+      VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
+      VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
+      VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
   const char* const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
   if (options.validation) {
     VKMESH_TRY(const bool available, has_validation_layer(loader));
@@ -87,9 +90,10 @@ Result<std::unique_ptr<Instance>> Instance::create(const ContextOptions& options
 
   const VkResult created = loader.vkCreateInstance(&info, nullptr, &instance->handle);
   if (created == VK_ERROR_INCOMPATIBLE_DRIVER)
-    return fail(ErrorCode::kNoDevice,
-                "no Vulkan driver is installed that fits this machine (Debian's mesa-vulkan-drivers has one in "
-                "software)");
+    return fail(
+        ErrorCode::kNoDevice,
+        "no Vulkan driver is installed that fits this machine (Debian's mesa-vulkan-drivers has one in "
+        "software)");
   if (created != VK_SUCCESS) {
     instance->handle = VK_NULL_HANDLE;
     tl::unexpected<Error> failure = vulkan_failure(created, "making a Vulkan instance");
@@ -127,8 +131,8 @@ Device::~Device() {
     functions.vkDestroyPipelineLayout(handle, cached.kernel->layout_, nullptr);
   }
   if (adopted || handle == VK_NULL_HANDLE) return;
-  const auto destroy =
-      reinterpret_cast<PFN_vkDestroyDevice>(instance_functions.vkGetDeviceProcAddr(handle, "vkDestroyDevice"));
+  const auto destroy = reinterpret_cast<PFN_vkDestroyDevice>(
+      instance_functions.vkGetDeviceProcAddr(handle, "vkDestroyDevice"));
   if (destroy != nullptr) destroy(handle, nullptr);
 }
 
@@ -174,10 +178,11 @@ Result<void> Device::submit(const VkSubmitInfo& submit_info, VkFence fence) {
 }
 
 void Device::set_name(VkObjectType type, std::uint64_t object, const std::string& name) const {
-  if (instance_functions.vkSetDebugUtilsObjectNameEXT == nullptr || !instance || !instance->messages || name.empty())
+  if (instance_functions.vkSetDebugUtilsObjectNameEXT == nullptr || !instance || !instance->messages ||
+      name.empty())
     return;
-  const VkDebugUtilsObjectNameInfoEXT name_info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type,
-                                                object, name.c_str()};
+  const VkDebugUtilsObjectNameInfoEXT name_info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr,
+                                                type, object, name.c_str()};
   // A name that was not taken is no loss.
   (void)instance_functions.vkSetDebugUtilsObjectNameEXT(handle, &name_info);
 }
@@ -207,17 +212,19 @@ Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source) 
   const std::string what = "making kernel '" + source.name + "'";
   // A struct ends on a multiple of its alignment, which the shader's last member need not reach.
   const auto padded = [](std::uint32_t bytes) { return (bytes + 7) / 8 * 8; };
-  if (padded(shader.push_constant_bytes) != padded(source.push_constant_bytes) || source.push_constant_bytes % 4 != 0)
+  if (padded(shader.push_constant_bytes) != padded(source.push_constant_bytes) ||
+      source.push_constant_bytes % 4 != 0)
     return fail(ErrorCode::kUsage, what + ": the shader takes " + std::to_string(shader.push_constant_bytes) +
-                                       " bytes of push constants, not " + std::to_string(source.push_constant_bytes));
+                                       " bytes of push constants, not " +
+                                       std::to_string(source.push_constant_bytes));
   if (source.push_constant_bytes < 8 || source.push_constant_bytes > max_push_constants)
     return fail(ErrorCode::kUsage, what + ": " + std::to_string(source.push_constant_bytes) +
                                        " bytes of push constants are outside [8, " +
                                        std::to_string(max_push_constants) + "]");
 
-  const std::vector<std::uint32_t> spirv =
-      with_float_controls(source.spirv, {.round_to_nearest_even = rounds_to_nearest_even,
-                                         .keep_signed_zeros = keeps_signed_zeros});
+  const std::vector<std::uint32_t> spirv = with_float_controls(
+      source.spirv,
+      {.round_to_nearest_even = rounds_to_nearest_even, .keep_signed_zeros = keeps_signed_zeros});
   auto kernel = std::make_unique<Kernel>();
   kernel->name_ = source.name;
   kernel->push_constant_bytes_ = source.push_constant_bytes;
@@ -244,7 +251,8 @@ Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source) 
     pipeline_info.stage.module = module;
     pipeline_info.stage.pName = shader.entry_point.c_str();
     pipeline_info.layout = kernel->layout_;
-    result = functions.vkCreateComputePipelines(handle, VK_NULL_HANDLE, 1, &pipeline_info, nullptr, &kernel->pipeline_);
+    result = functions.vkCreateComputePipelines(handle, VK_NULL_HANDLE, 1, &pipeline_info, nullptr,
+                                                &kernel->pipeline_);
     if (result != VK_SUCCESS) functions.vkDestroyPipelineLayout(handle, kernel->layout_, nullptr);
   }
   functions.vkDestroyShaderModule(handle, module, nullptr);

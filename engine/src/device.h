@@ -58,9 +58,12 @@ struct PhysicalDevice {
 [[nodiscard]] Result<std::vector<PhysicalDevice>> physical_devices(const InstanceFunctions& functions,
                                                                    VkInstance instance);
 /// `index` is only carried into the result.
-[[nodiscard]] PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle, std::uint32_t index);
-/// The device that ContextOptions::device asks for. Errors: kNoDevice, naming each device and why it was rejected.
-[[nodiscard]] Result<PhysicalDevice> choose(const std::vector<PhysicalDevice>& devices, const std::string& request);
+[[nodiscard]] PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle,
+                                   std::uint32_t index);
+/// The device that ContextOptions::device asks for. Errors: kNoDevice, naming each device and why it was
+/// rejected.
+[[nodiscard]] Result<PhysicalDevice> choose(const std::vector<PhysicalDevice>& devices,
+                                            const std::string& request);
 
 class Device {
  public:
@@ -114,8 +117,8 @@ class Device {
   std::map<std::string, CachedKernel> kernels_;
 };
 
-/// Runs the arithmetic of the shaders on chosen values. Errors: kNoDevice, naming the function whose result differs
-/// from the host's.
+/// Runs the arithmetic of the shaders on chosen values. Errors: kNoDevice, naming the function whose result
+/// differs from the host's.
 [[nodiscard]] Result<void> check_exactness(Context& context);
 
 }  // namespace vkmesh::detail

@@ -43,8 +43,8 @@ DeviceType type_of(VkPhysicalDeviceType type) {
 }
 
 std::string version_text(std::uint32_t version) {
-  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
-         std::to_string(VK_API_VERSION_PATCH(version));
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
+         "." + std::to_string(VK_API_VERSION_PATCH(version));
 }
 
 std::string lower(std::string text) {
@@ -54,13 +54,15 @@ std::string lower(std::string text) {
 }
 
 /// Empty where the request means this device.
-std::string why_not(const PhysicalDevice& device, const std::string& request, std::optional<std::uint32_t> index) {
+std::string why_not(const PhysicalDevice& device, const std::string& request,
+                    std::optional<std::uint32_t> index) {
   const bool automatic = request == "auto";
   if (index && *index != device.info.index) return "its index is " + std::to_string(device.info.index);
   if (!automatic && !index && lower(device.info.name).find(lower(request)) == std::string::npos)
     return "its name does not hold these letters";
   if (!device.info.usable) return device.info.rejected;
-  if (automatic && device.info.type == DeviceType::kSoftware) return "it is software, which must be asked for by name";
+  if (automatic && device.info.type == DeviceType::kSoftware)
+    return "it is software, which must be asked for by name";
   return {};
 }
 
@@ -88,7 +90,8 @@ PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle
         "needs Vulkan " + version_text(required_api_version()) + ", has " + device.info.api_version;
     return device;
   }
-  VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, nullptr, {}, {}, {}, {}};
+  VkPhysicalDeviceDriverProperties driver{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, nullptr, {}, {}, {}, {}};
   VkPhysicalDeviceProperties2 more{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
   functions.vkGetPhysicalDeviceProperties2(handle, &more);
   device.info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
@@ -118,12 +121,14 @@ PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle
   return device;
 }
 
-Result<std::vector<PhysicalDevice>> physical_devices(const InstanceFunctions& functions, VkInstance instance) {
+Result<std::vector<PhysicalDevice>> physical_devices(const InstanceFunctions& functions,
+                                                     VkInstance instance) {
   std::uint32_t count = 0;
   VKMESH_VK(functions.vkEnumeratePhysicalDevices(instance, &count, nullptr), "listing the Vulkan devices");
   std::vector<VkPhysicalDevice> handles(count);
   if (count > 0)
-    VKMESH_VK(functions.vkEnumeratePhysicalDevices(instance, &count, handles.data()), "listing the Vulkan devices");
+    VKMESH_VK(functions.vkEnumeratePhysicalDevices(instance, &count, handles.data()),
+              "listing the Vulkan devices");
   handles.resize(count);
   std::vector<PhysicalDevice> devices;
   for (std::uint32_t i = 0; i < count; ++i) devices.push_back(judge(functions, handles[i], i));

@@ -1,9 +1,9 @@
-#include <vkmesh/engine/recorder.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
+
+#include <vkmesh/engine/recorder.h>
 
 #include "catching.h"
 #include "device.h"
@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t kMaxSections = 64;
 
-constexpr VkPipelineStageFlags kStages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+constexpr VkPipelineStageFlags kStages =
+    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
 constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kReads = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
 
@@ -84,7 +85,8 @@ void Recorder::State::memory_barrier(VkPipelineStageFlags stages, VkAccessFlags 
 void Recorder::State::order(std::span<const Buffer* const> reads, std::span<const Buffer* const> writes) {
   const bool hazard =
       std::any_of(reads.begin(), reads.end(), [&](const Buffer* b) { return holds(written, b); }) ||
-      std::any_of(writes.begin(), writes.end(), [&](const Buffer* b) { return holds(written, b) || holds(read, b); });
+      std::any_of(writes.begin(), writes.end(),
+                  [&](const Buffer* b) { return holds(written, b) || holds(read, b); });
   if (hazard) {
     memory_barrier(kStages, kReads | kWrites);
     ++counts.barriers;
@@ -102,7 +104,8 @@ Result<void> Recorder::State::wait_for_fence() {
   if (result == VK_TIMEOUT)
     return fail(ErrorCode::kNoDevice,
                 d.info.name + " did not finish its work within " +
-                    std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count()) + " ms");
+                    std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count()) +
+                    " ms");
   // A lost device runs nothing any more, so its objects can be destroyed.
   phase = result == VK_SUCCESS ? Phase::kDone : Phase::kFailed;
   VKMESH_VK(result, "waiting for " + d.info.name);
@@ -143,8 +146,8 @@ Result<Recorder> Recorder::create(Context& context) {
     VKMESH_VK(vk.vkCreateCommandPool(d.handle, &pool, nullptr, &state->pool), what);
     const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
     VKMESH_VK(vk.vkCreateFence(d.handle, &fence, nullptr, &state->fence), what);
-    const VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, state->pool,
-                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+    const VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr,
+                                               state->pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
     VKMESH_VK(vk.vkAllocateCommandBuffers(d.handle, &commands, &state->commands), what);
     const VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                          VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
@@ -155,7 +158,8 @@ Result<Recorder> Recorder::create(Context& context) {
 
 Result<Recorder> Recorder::into(Context& context, VkCommandBuffer command_buffer) {
   return detail::catching([&]() -> Result<Recorder> {
-    if (command_buffer == VK_NULL_HANDLE) return fail(ErrorCode::kUsage, "there is no command buffer to record into");
+    if (command_buffer == VK_NULL_HANDLE)
+      return fail(ErrorCode::kUsage, "there is no command buffer to record into");
     auto state = std::make_unique<State>(context);
     state->commands = command_buffer;
     state->borrowed = true;
@@ -163,11 +167,17 @@ Result<Recorder> Recorder::into(Context& context, VkCommandBuffer command_buffer
   });
 }
 
-Context& Recorder::context() const { return *state_->context; }
+Context& Recorder::context() const {
+  return *state_->context;
+}
 
-RecorderCounts Recorder::counts() const { return state_->counts; }
+RecorderCounts Recorder::counts() const {
+  return state_->counts;
+}
 
-std::vector<SectionTime> Recorder::section_times() const { return state_->times; }
+std::vector<SectionTime> Recorder::section_times() const {
+  return state_->times;
+}
 
 Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push_constants,
                                       std::uint64_t threads, std::span<const Buffer* const> reads,
@@ -175,12 +185,13 @@ Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std:
   return detail::catching([&]() -> Result<void> {
     VKMESH_CHECK(state_->require_recording());
     if (push_constants.size() != kernel.push_constant_bytes())
-      return fail(ErrorCode::kUsage, "kernel '" + kernel.name() + "' takes " +
-                                         std::to_string(kernel.push_constant_bytes()) +
-                                         " bytes of push constants, not " + std::to_string(push_constants.size()));
+      return fail(ErrorCode::kUsage,
+                  "kernel '" + kernel.name() + "' takes " + std::to_string(kernel.push_constant_bytes()) +
+                      " bytes of push constants, not " + std::to_string(push_constants.size()));
     if (threads > 0xffffffffu)
-      return fail(ErrorCode::kUsage, "a kernel's elements are counted in 32 bits: " + std::to_string(threads) +
-                                         " are too many for '" + kernel.name() + "'");
+      return fail(ErrorCode::kUsage,
+                  "a kernel's elements are counted in 32 bits: " + std::to_string(threads) +
+                      " are too many for '" + kernel.name() + "'");
     if (threads == 0) return {};
     const detail::Device& d = state_->device();
     const auto& vk = d.functions;
@@ -206,21 +217,23 @@ Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std:
   });
 }
 
-Result<void> Recorder::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset,
-                            std::uint64_t to_offset) {
+Result<void> Recorder::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes,
+                            std::uint64_t from_offset, std::uint64_t to_offset) {
   return detail::catching([&]() -> Result<void> {
     VKMESH_CHECK(state_->require_recording());
     if (from_offset > from.size() || bytes > from.size() - from_offset || to_offset > to.size() ||
         bytes > to.size() - to_offset)
       return fail(ErrorCode::kUsage, "a copy reaches past the end of a buffer");
-    if (from.vk_buffer() == to.vk_buffer() && from_offset < to_offset + bytes && to_offset < from_offset + bytes)
+    if (from.vk_buffer() == to.vk_buffer() && from_offset < to_offset + bytes &&
+        to_offset < from_offset + bytes)
       return fail(ErrorCode::kUsage, "a copy within a buffer must not overlap itself");
     if (bytes == 0) return {};
     const Buffer* reads[] = {&from};
     const Buffer* writes[] = {&to};
     state_->order(reads, writes);
     const VkBufferCopy region{from_offset, to_offset, bytes};
-    state_->device().functions.vkCmdCopyBuffer(state_->commands, from.vk_buffer(), to.vk_buffer(), 1, &region);
+    state_->device().functions.vkCmdCopyBuffer(state_->commands, from.vk_buffer(), to.vk_buffer(), 1,
+                                               &region);
     ++state_->counts.copies;
     return {};
   });
@@ -229,7 +242,8 @@ Result<void> Recorder::copy(const Buffer& from, const Buffer& to, std::uint64_t 
 void Recorder::begin_section(const std::string& name) {
   State& s = *state_;
   const detail::Device& d = s.device();
-  if (s.borrowed || s.phase != State::Phase::kRecording || d.timestamp_bits == 0 || s.sections.size() >= kMaxSections)
+  if (s.borrowed || s.phase != State::Phase::kRecording || d.timestamp_bits == 0 ||
+      s.sections.size() >= kMaxSections)
     return;
   const auto& vk = d.functions;
   // A section that cannot be timed is work like any other.
@@ -280,7 +294,8 @@ Result<void> Recorder::submit_and_wait(std::chrono::nanoseconds timeout) {
 Result<void> Recorder::wait(std::chrono::nanoseconds timeout) {
   return detail::catching([&]() -> Result<void> {
     if (state_->phase == State::Phase::kDone) return {};
-    if (state_->phase != State::Phase::kRunning) return fail(ErrorCode::kUsage, "no work was submitted to wait for");
+    if (state_->phase != State::Phase::kRunning)
+      return fail(ErrorCode::kUsage, "no work was submitted to wait for");
     state_->timeout = timeout;
     VKMESH_CHECK(state_->wait_for_fence());
     return state_->read_times();

@@ -14,7 +14,15 @@ using std::uint32_t;
 #include "shaders/vertex_maxima.spv.h"
 #include "shaders/vertex_normals.spv.h"
 
-enum Index { kCanary, kDihedralAngles, kLaplacianSmoothing, kTriangleAreas, kTriangleNormals, kVertexMaxima, kVertexNormals };
+enum Index {
+  kCanary,
+  kDihedralAngles,
+  kLaplacianSmoothing,
+  kTriangleAreas,
+  kTriangleNormals,
+  kVertexMaxima,
+  kVertexNormals
+};
 
 }  // namespace
 
@@ -31,12 +39,26 @@ std::span<const KernelSource> embedded_kernels() {
   return kKernels;
 }
 
-const KernelSource& canary_kernel() { return embedded_kernels()[kCanary]; }
-const KernelSource& dihedral_angles_kernel() { return embedded_kernels()[kDihedralAngles]; }
-const KernelSource& laplacian_smoothing_kernel() { return embedded_kernels()[kLaplacianSmoothing]; }
-const KernelSource& triangle_areas_kernel() { return embedded_kernels()[kTriangleAreas]; }
-const KernelSource& triangle_normals_kernel() { return embedded_kernels()[kTriangleNormals]; }
-const KernelSource& vertex_maxima_kernel() { return embedded_kernels()[kVertexMaxima]; }
-const KernelSource& vertex_normals_kernel() { return embedded_kernels()[kVertexNormals]; }
+const KernelSource& canary_kernel() {
+  return embedded_kernels()[kCanary];
+}
+const KernelSource& dihedral_angles_kernel() {
+  return embedded_kernels()[kDihedralAngles];
+}
+const KernelSource& laplacian_smoothing_kernel() {
+  return embedded_kernels()[kLaplacianSmoothing];
+}
+const KernelSource& triangle_areas_kernel() {
+  return embedded_kernels()[kTriangleAreas];
+}
+const KernelSource& triangle_normals_kernel() {
+  return embedded_kernels()[kTriangleNormals];
+}
+const KernelSource& vertex_maxima_kernel() {
+  return embedded_kernels()[kVertexMaxima];
+}
+const KernelSource& vertex_normals_kernel() {
+  return embedded_kernels()[kVertexNormals];
+}
 
 }  // namespace vkmesh::detail

@@ -59,8 +59,9 @@ std::string literal(std::span<const std::uint32_t> words) {
 class Types {
  public:
   void add(const SpirvInstruction& i) {
-    if (i.words.size() >= 2 && (i.opcode == kOpTypeInt || i.opcode == kOpTypeFloat || i.opcode == kOpTypeVector ||
-                                i.opcode == kOpTypeStruct || i.opcode == kOpTypePointer))
+    if (i.words.size() >= 2 &&
+        (i.opcode == kOpTypeInt || i.opcode == kOpTypeFloat || i.opcode == kOpTypeVector ||
+         i.opcode == kOpTypeStruct || i.opcode == kOpTypePointer))
       types_[i.words[1]] = i;
     if (i.opcode == kOpMemberDecorate && i.words.size() == 5 && i.words[3] == kDecorationOffset)
       offsets_[{i.words[1], i.words[2]}] = i.words[4];
@@ -68,7 +69,8 @@ class Types {
 
   [[nodiscard]] std::optional<std::uint32_t> pointee(std::uint32_t pointer) const {
     const auto type = types_.find(pointer);
-    if (type == types_.end() || type->second.opcode != kOpTypePointer || type->second.words.size() != 4) return {};
+    if (type == types_.end() || type->second.opcode != kOpTypePointer || type->second.words.size() != 4)
+      return {};
     return type->second.words[3];
   }
 
@@ -157,7 +159,8 @@ Result<SpirvKernel> inspect_spirv(std::span<const std::uint32_t> module) {
   return kernel;
 }
 
-std::vector<std::uint32_t> with_float_controls(std::span<const std::uint32_t> module, const FloatControls& controls) {
+std::vector<std::uint32_t> with_float_controls(std::span<const std::uint32_t> module,
+                                               const FloatControls& controls) {
   std::vector<std::uint32_t> result(module.begin(), module.end());
   const auto instructions = spirv_instructions(module);
   if (!instructions || module[1] < kVersion14) return result;

@@ -27,8 +27,8 @@ struct SpirvKernel {
   std::uint32_t push_constant_bytes = 0;  ///< Up to the end of the last member.
 };
 
-/// Errors: kUsage unless there is one compute entry point, with a fixed workgroup of one dimension, and push constants
-/// made of scalars, vectors, buffer addresses and structs of these.
+/// Errors: kUsage unless there is one compute entry point, with a fixed workgroup of one dimension, and push
+/// constants made of scalars, vectors, buffer addresses and structs of these.
 [[nodiscard]] Result<SpirvKernel> inspect_spirv(std::span<const std::uint32_t> module);
 
 struct FloatControls {
@@ -36,8 +36,8 @@ struct FloatControls {
   bool keep_signed_zeros = false;
 };
 
-/// The module with these asked for, for 32-bit floats. `module` must have passed inspect_spirv(). Modules older than
-/// SPIR-V 1.4, which would need an extension for it, stay as they are.
+/// The module with these asked for, for 32-bit floats. `module` must have passed inspect_spirv(). Modules
+/// older than SPIR-V 1.4, which would need an extension for it, stay as they are.
 [[nodiscard]] std::vector<std::uint32_t> with_float_controls(std::span<const std::uint32_t> module,
                                                              const FloatControls& controls);
 

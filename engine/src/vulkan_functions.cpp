@@ -5,7 +5,8 @@
 namespace vkmesh::detail {
 namespace {
 
-// The library stays open until the process ends: drivers leave thread-exit handlers behind that would jump into it.
+// The library stays open until the process ends: drivers leave thread-exit handlers behind that would jump
+// into it.
 PFN_vkGetInstanceProcAddr open_system_loader() {
   for (const char* name : {"libvulkan.so.1", "libvulkan.so"})
     if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL))
@@ -20,8 +21,8 @@ tl::unexpected<Error> missing(const char* function) {
 
 }  // namespace
 
-#define VKMESH_LOAD(name)                                                \
-  functions.name = reinterpret_cast<PFN_##name>(load(#name));            \
+#define VKMESH_LOAD(name)                                     \
+  functions.name = reinterpret_cast<PFN_##name>(load(#name)); \
   if (functions.name == nullptr) return missing(#name);
 
 Result<LoaderFunctions> load_loader_functions(PFN_vkGetInstanceProcAddr entry) {
@@ -60,17 +61,28 @@ Result<DeviceFunctions> load_device_functions(const InstanceFunctions& instance,
 
 std::string name_of(VkResult result) {
   switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY: return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED: return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST: return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_MEMORY_MAP_FAILED: return "VK_ERROR_MEMORY_MAP_FAILED";
-    case VK_ERROR_LAYER_NOT_PRESENT: return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT: return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT: return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER: return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_ERROR_TOO_MANY_OBJECTS: return "VK_ERROR_TOO_MANY_OBJECTS";
-    default: return "VkResult " + std::to_string(static_cast<int>(result));
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return "VK_ERROR_OUT_OF_HOST_MEMORY";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+    case VK_ERROR_INITIALIZATION_FAILED:
+      return "VK_ERROR_INITIALIZATION_FAILED";
+    case VK_ERROR_DEVICE_LOST:
+      return "VK_ERROR_DEVICE_LOST";
+    case VK_ERROR_MEMORY_MAP_FAILED:
+      return "VK_ERROR_MEMORY_MAP_FAILED";
+    case VK_ERROR_LAYER_NOT_PRESENT:
+      return "VK_ERROR_LAYER_NOT_PRESENT";
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+      return "VK_ERROR_EXTENSION_NOT_PRESENT";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return "VK_ERROR_FEATURE_NOT_PRESENT";
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+      return "VK_ERROR_INCOMPATIBLE_DRIVER";
+    case VK_ERROR_TOO_MANY_OBJECTS:
+      return "VK_ERROR_TOO_MANY_OBJECTS";
+    default:
+      return "VkResult " + std::to_string(static_cast<int>(result));
   }
 }
 

@@ -1,8 +1,9 @@
-// The Vulkan functions that the engine calls, held by each context: no global function pointers, so that several
-// contexts, and a program with a loader of its own, live side by side.
+// The Vulkan functions that the engine calls, held by each context: no global function pointers, so that
+// several contexts, and a program with a loader of its own, live side by side.
 #pragma once
 
 #include <string>
+
 #include <vulkan/vulkan_core.h>
 
 #include <vkmesh/result.h>
@@ -14,54 +15,54 @@ namespace vkmesh::detail {
   X(vkEnumerateInstanceExtensionProperties) \
   X(vkEnumerateInstanceLayerProperties)
 
-#define VKMESH_INSTANCE_FUNCTIONS(X)         \
-  X(vkCreateDevice)                          \
-  X(vkDestroyInstance)                       \
-  X(vkEnumeratePhysicalDevices)              \
-  X(vkGetDeviceProcAddr)                     \
-  X(vkGetPhysicalDeviceFeatures2)            \
-  X(vkGetPhysicalDeviceMemoryProperties)     \
-  X(vkGetPhysicalDeviceProperties)           \
-  X(vkGetPhysicalDeviceProperties2)          \
+#define VKMESH_INSTANCE_FUNCTIONS(X)     \
+  X(vkCreateDevice)                      \
+  X(vkDestroyInstance)                   \
+  X(vkEnumeratePhysicalDevices)          \
+  X(vkGetDeviceProcAddr)                 \
+  X(vkGetPhysicalDeviceFeatures2)        \
+  X(vkGetPhysicalDeviceMemoryProperties) \
+  X(vkGetPhysicalDeviceProperties)       \
+  X(vkGetPhysicalDeviceProperties2)      \
   X(vkGetPhysicalDeviceQueueFamilyProperties)
 
-#define VKMESH_DEVICE_FUNCTIONS(X)   \
-  X(vkAllocateCommandBuffers)        \
-  X(vkAllocateMemory)                \
-  X(vkBeginCommandBuffer)            \
-  X(vkBindBufferMemory)              \
-  X(vkCmdBindPipeline)               \
-  X(vkCmdCopyBuffer)                 \
-  X(vkCmdDispatch)                   \
-  X(vkCmdPipelineBarrier)            \
-  X(vkCmdPushConstants)              \
-  X(vkCmdResetQueryPool)             \
-  X(vkCmdWriteTimestamp)             \
-  X(vkCreateBuffer)                  \
-  X(vkCreateCommandPool)             \
-  X(vkCreateComputePipelines)        \
-  X(vkCreateFence)                   \
-  X(vkCreatePipelineLayout)          \
-  X(vkCreateQueryPool)               \
-  X(vkCreateShaderModule)            \
-  X(vkDestroyBuffer)                 \
-  X(vkDestroyCommandPool)            \
-  X(vkDestroyDevice)                 \
-  X(vkDestroyFence)                  \
-  X(vkDestroyPipeline)               \
-  X(vkDestroyPipelineLayout)         \
-  X(vkDestroyQueryPool)              \
-  X(vkDestroyShaderModule)           \
-  X(vkEndCommandBuffer)              \
-  X(vkFlushMappedMemoryRanges)       \
-  X(vkFreeMemory)                    \
-  X(vkGetBufferDeviceAddress)        \
-  X(vkGetBufferMemoryRequirements)   \
-  X(vkGetDeviceQueue)                \
-  X(vkGetQueryPoolResults)           \
-  X(vkInvalidateMappedMemoryRanges)  \
-  X(vkMapMemory)                     \
-  X(vkQueueSubmit)                   \
+#define VKMESH_DEVICE_FUNCTIONS(X)  \
+  X(vkAllocateCommandBuffers)       \
+  X(vkAllocateMemory)               \
+  X(vkBeginCommandBuffer)           \
+  X(vkBindBufferMemory)             \
+  X(vkCmdBindPipeline)              \
+  X(vkCmdCopyBuffer)                \
+  X(vkCmdDispatch)                  \
+  X(vkCmdPipelineBarrier)           \
+  X(vkCmdPushConstants)             \
+  X(vkCmdResetQueryPool)            \
+  X(vkCmdWriteTimestamp)            \
+  X(vkCreateBuffer)                 \
+  X(vkCreateCommandPool)            \
+  X(vkCreateComputePipelines)       \
+  X(vkCreateFence)                  \
+  X(vkCreatePipelineLayout)         \
+  X(vkCreateQueryPool)              \
+  X(vkCreateShaderModule)           \
+  X(vkDestroyBuffer)                \
+  X(vkDestroyCommandPool)           \
+  X(vkDestroyDevice)                \
+  X(vkDestroyFence)                 \
+  X(vkDestroyPipeline)              \
+  X(vkDestroyPipelineLayout)        \
+  X(vkDestroyQueryPool)             \
+  X(vkDestroyShaderModule)          \
+  X(vkEndCommandBuffer)             \
+  X(vkFlushMappedMemoryRanges)      \
+  X(vkFreeMemory)                   \
+  X(vkGetBufferDeviceAddress)       \
+  X(vkGetBufferMemoryRequirements)  \
+  X(vkGetDeviceQueue)               \
+  X(vkGetQueryPoolResults)          \
+  X(vkInvalidateMappedMemoryRanges) \
+  X(vkMapMemory)                    \
+  X(vkQueueSubmit)                  \
   X(vkWaitForFences)
 
 #define VKMESH_MEMBER(name) PFN_##name name = nullptr;
@@ -88,8 +89,10 @@ struct DeviceFunctions {
 
 /// `entry` null: the system's loader. Errors: kNoDevice without one.
 [[nodiscard]] Result<LoaderFunctions> load_loader_functions(PFN_vkGetInstanceProcAddr entry);
-[[nodiscard]] Result<InstanceFunctions> load_instance_functions(PFN_vkGetInstanceProcAddr entry, VkInstance instance);
-[[nodiscard]] Result<DeviceFunctions> load_device_functions(const InstanceFunctions& functions, VkDevice device);
+[[nodiscard]] Result<InstanceFunctions> load_instance_functions(PFN_vkGetInstanceProcAddr entry,
+                                                                VkInstance instance);
+[[nodiscard]] Result<DeviceFunctions> load_device_functions(const InstanceFunctions& functions,
+                                                            VkDevice device);
 
 /// "VK_ERROR_DEVICE_LOST", or the number.
 [[nodiscard]] std::string name_of(VkResult result);
@@ -100,8 +103,8 @@ struct DeviceFunctions {
 }  // namespace vkmesh::detail
 
 /// Returns the error of a Vulkan call that did not succeed. `what` says what was being done.
-#define VKMESH_VK(call, what)                                                                         \
-  do {                                                                                                \
-    const VkResult vkmesh_vk_result = (call);                                                         \
+#define VKMESH_VK(call, what)                                                                            \
+  do {                                                                                                   \
+    const VkResult vkmesh_vk_result = (call);                                                            \
     if (vkmesh_vk_result != VK_SUCCESS) return ::vkmesh::detail::vulkan_failure(vkmesh_vk_result, what); \
   } while (false)

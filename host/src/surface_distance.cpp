@@ -1,14 +1,15 @@
-#include <vkmesh/surface_distance.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
+
+#include <glm/common.hpp>
+
+#include <vkmesh/surface_distance.h>
 
 #include "catching.h"
 
@@ -18,7 +19,9 @@ namespace {
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kSamplesBetweenReports = 8192;
 
-double dot(const DVec3& a, const DVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double dot(const DVec3& a, const DVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 DVec3 cross(const DVec3& a, const DVec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -40,12 +43,13 @@ double squared_distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& 
   return dot(rest, rest);
 }
 
-/// To the plane where p lies over the triangle, else to the nearest edge: a triangle without area is its edges.
+/// To the plane where p lies over the triangle, else to the nearest edge: a triangle without area is its
+/// edges.
 double squared_distance(const DVec3& p, const Triangle& t) {
   const DVec3 normal = cross(t.b - t.a, t.c - t.a);
   const double area2 = dot(normal, normal);
-  if (area2 > 0 && dot(cross(t.b - t.a, p - t.a), normal) >= 0 && dot(cross(t.c - t.b, p - t.b), normal) >= 0 &&
-      dot(cross(t.a - t.c, p - t.c), normal) >= 0) {
+  if (area2 > 0 && dot(cross(t.b - t.a, p - t.a), normal) >= 0 &&
+      dot(cross(t.c - t.b, p - t.b), normal) >= 0 && dot(cross(t.a - t.c, p - t.c), normal) >= 0) {
     const double height = dot(p - t.a, normal);
     return height * height / area2;
   }
@@ -71,7 +75,8 @@ class Tree {
     for (const std::uint32_t f : order) triangles_.push_back(triangle(surface, f));
   }
 
-  /// The squared distance of p from its nearest triangle. `hint` is any triangle, best one near p; becomes the nearest.
+  /// The squared distance of p from its nearest triangle. `hint` is any triangle, best one near p; becomes
+  /// the nearest.
   [[nodiscard]] double nearest(const DVec3& p, std::uint32_t& hint) const {
     double best = squared_distance(p, triangles_[hint]);
     std::array<std::pair<std::uint32_t, double>, 64> stack;
@@ -103,7 +108,8 @@ class Tree {
  private:
   struct Node {
     Vec3 low, high;
-    std::uint32_t first = 0;  ///< Leaf: first triangle. Else: the second child; the first one follows its parent.
+    std::uint32_t first =
+        0;  ///< Leaf: first triangle. Else: the second child; the first one follows its parent.
     std::uint32_t count = 0;  ///< Leaf: triangles. Else 0.
   };
 
@@ -117,11 +123,11 @@ class Tree {
   }
 
   /// The node of order[first, last) and those below it. Halving bounds the depth by 32.
-  void split(const TriangleSurface& surface, const std::vector<Vec3>& centres, std::vector<std::uint32_t>& order,
-             std::uint32_t first, std::uint32_t last) {
+  void split(const TriangleSurface& surface, const std::vector<Vec3>& centres,
+             std::vector<std::uint32_t>& order, std::uint32_t first, std::uint32_t last) {
     const std::size_t index = nodes_.size();
-    Node node{Vec3(std::numeric_limits<float>::infinity()), Vec3(-std::numeric_limits<float>::infinity()), first,
-              last - first};
+    Node node{Vec3(std::numeric_limits<float>::infinity()), Vec3(-std::numeric_limits<float>::infinity()),
+              first, last - first};
     Vec3 low = node.low, high = node.high;
     for (std::uint32_t i = first; i < last; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -158,7 +164,8 @@ double area(const Triangle& t) {
 
 /// Reports in [begin, begin + 0.5].
 Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSurface& to,
-                                  const SurfaceDistanceOptions& options, const Progress& progress, double begin) {
+                                  const SurfaceDistanceOptions& options, const Progress& progress,
+                                  double begin) {
   const Tree tree(to);
   const std::size_t faces = from.corners.size() / 3;
   double total = 0;
@@ -175,7 +182,8 @@ Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSur
   Triangle t = triangle(from, 0);
   double passed = area(t);  // of the faces up to f
   for (std::size_t i = 0; i < options.samples; ++i) {
-    if (progress && i % kSamplesBetweenReports == 0 && !progress(begin + 0.5 * static_cast<double>(i) / samples))
+    if (progress && i % kSamplesBetweenReports == 0 &&
+        !progress(begin + 0.5 * static_cast<double>(i) / samples))
       return fail(ErrorCode::kInterrupted, "the comparison was cancelled");
     const double place = total * ((static_cast<double>(i) + uniform()) / samples);
     while (passed <= place && f + 1 < faces) {
@@ -199,10 +207,12 @@ Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSur
 }
 
 Result<void> check(const TriangleSurface& surface) {
-  if (surface.corners.size() % 3 != 0) return fail(ErrorCode::kUsage, "a surface needs three corners for each triangle");
+  if (surface.corners.size() % 3 != 0)
+    return fail(ErrorCode::kUsage, "a surface needs three corners for each triangle");
   double total = 0;
   for (const std::uint32_t corner : surface.corners)
-    if (corner >= surface.points.size()) return fail(ErrorCode::kUsage, "a corner of the surface is out of range");
+    if (corner >= surface.points.size())
+      return fail(ErrorCode::kUsage, "a corner of the surface is out of range");
   for (std::size_t f = 0; f < surface.corners.size() / 3; ++f) total += area(triangle(surface, f));
   if (!(total > 0)) return fail(ErrorCode::kUnsuitable, "a surface without area has no samples to compare");
   return {};

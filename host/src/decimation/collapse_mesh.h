@@ -12,19 +12,30 @@
 
 namespace vkmesh::detail {
 
-/// The mesh closed by one extra vertex, the apex, joined to every boundary edge by a triangle: there is no boundary, so no
-/// walk has a special case, and the link condition of the closed complex is that of the mesh with boundary (T. Dey,
-/// H. Edelsbrunner, S. Guha, D. Nekhayev, "Topology preserving edge contraction", 1999). Only the apex may have
-/// several fans, and nothing walks around it.
+/// Asks for the cache line at `address` without waiting for it.
+inline void prefetch(const void* address) {
+#if defined(__GNUC__) || defined(__clang__)
+  __builtin_prefetch(address);
+#else
+  static_cast<void>(address);
+#endif
+}
+
+/// The mesh closed by one extra vertex, the apex, joined to every boundary edge by a triangle: there is no
+/// boundary, so no walk has a special case, and the link condition of the closed complex is that of the mesh
+/// with boundary (T. Dey, H. Edelsbrunner, S. Guha, D. Nekhayev, "Topology preserving edge contraction",
+/// 1999). Only the apex may have several fans, and nothing walks around it.
 ///
-/// Half-edge 4f + i starts at corner i of face f, i < 3: a face is a record of 32 bytes and shifts find it. The faces of the
-/// mesh come first and keep their numbers.
+/// Half-edge 4f + i starts at corner i of face f, i < 3: a face is a record of 32 bytes and shifts find it.
+/// The faces of the mesh come first and keep their numbers.
 class CollapseMesh {
  public:
   struct Face {
     std::array<std::uint32_t, 4> origin;  // [3] unused
     std::array<std::uint32_t, 4> twin;
   };
+
+  static constexpr std::size_t kMaxFaces = std::size_t{1} << 30;
 
   /// A vertex and what is most often asked about it, in one cache line.
   struct Vertex {
@@ -60,12 +71,18 @@ class CollapseMesh {
       const HalfEdgeId start = mesh.leading(VertexId(static_cast<std::uint32_t>(v)));
       if (!start.valid() || !mesh.is_boundary(start)) continue;
       const HalfEdgeId after = mesh.next_on_boundary(start);
-      // start runs v → w, so its ghost holds w → v, v → apex, apex → w; that of the next edge w → x holds w → apex.
+      // start runs v → w, so its ghost holds w → v, v → apex, apex → w; that of the next edge w → x holds w →
+      // apex.
       set_twins(twin(renumber(start.index)) + 2, twin(renumber(after.index)) + 1);
     }
   }
 
-  void prefetch(std::uint32_t h) const { __builtin_prefetch(&faces_[h >> 2]); }
+  /// Asks for what a walk around the ends p and q of half-edge h reads first.
+  void prefetch(std::uint32_t h, std::uint32_t p, std::uint32_t q) const {
+    detail::prefetch(&faces_[h >> 2]);
+    detail::prefetch(&vertices_[p]);
+    detail::prefetch(&vertices_[q]);
+  }
   [[nodiscard]] std::uint32_t apex() const { return apex_; }
   [[nodiscard]] std::size_t face_count() const { return face_count_; }
   [[nodiscard]] bool is_ghost(std::uint32_t h) const { return h / 4 >= face_count_; }
@@ -82,14 +99,15 @@ class CollapseMesh {
   [[nodiscard]] const Vec3& position(std::uint32_t v) const { return vertices_[v].position; }
   [[nodiscard]] bool alive(std::size_t f) const { return faces_[f].origin[0] != kInvalid; }
 
-  /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. The link condition must
-  /// hold. Returns how many of the two faces were the mesh's own. O(valence of p).
+  /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. The link
+  /// condition must hold. Returns how many of the two faces were the mesh's own. O(valence of p).
   unsigned collapse(std::uint32_t h) {
     const std::uint32_t t = twin(h);
     const std::uint32_t p = origin(h), q = origin(t);
     const std::uint32_t q_to_a = next(h), a_to_p = previous(h);
     const std::uint32_t p_to_b = next(t), b_to_q = previous(t);
-    for (std::uint32_t out = around_vertex(h); out != h; out = around_vertex(out)) faces_[out >> 2].origin[out & 3u] = q;
+    for (std::uint32_t out = around_vertex(h); out != h; out = around_vertex(out))
+      faces_[out >> 2].origin[out & 3u] = q;
 
     const std::uint32_t a_out = twin(q_to_a), b_out = twin(p_to_b);  // a → q and b → p, which b → q becomes
     const std::uint32_t a = origin(a_to_p), b = origin(b_to_q);

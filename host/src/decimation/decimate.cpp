@@ -1,12 +1,12 @@
-#include <vkmesh/decimation/decimate.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include <vkmesh/decimation/addressable_heap.h>
+#include <vkmesh/decimation/decimate.h>
 
 #include "catching.h"
 #include "decimation/collapse_mesh.h"
@@ -19,18 +19,20 @@ using detail::CollapseMesh;
 using detail::Quadric;
 
 constexpr std::size_t kCollapsesBetweenReports = 4096;
-/// A triangle whose height is less than this share of its edges has no reliable normal.
+/// A triangle of less area than this share of its squared sides has no reliable normal.
 constexpr double kDegenerate = 1e-7;
 
 DVec3 cross(const DVec3& a, const DVec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-double dot(const DVec3& a, const DVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double dot(const DVec3& a, const DVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 enum class Legality { kLegal, kLink, kFoldOver, kError };
 
-/// One run. Candidates: each vertex p stands in the heap once, with the half-edge p → q that costs least among those
-/// not known to be illegal.
+/// One run. Candidates: each vertex p stands in the heap once, with the half-edge p → q that costs least
+/// among those not known to be illegal.
 class Decimation {
  public:
   Decimation(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const DecimateOptions& options)
@@ -58,7 +60,8 @@ class Decimation {
     std::size_t steps = 0;
     while (faces_ > target && !heap_.empty()) {
       if (progress && ++steps % kCollapsesBetweenReports == 0) {
-        const double done = static_cast<double>(first_faces - faces_) / static_cast<double>(first_faces - target);
+        const double done =
+            static_cast<double>(first_faces - faces_) / static_cast<double>(first_faces - target);
         if (!progress(done)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
       }
       step();
@@ -70,8 +73,9 @@ class Decimation {
  private:
   /// What the heap holds for a vertex.
   struct Candidate {
-    std::uint32_t half_edge = kInvalid;  ///< Leaves the vertex; kInvalid: none, and the vertex is not in the heap.
-    std::uint32_t towards = kInvalid;    ///< Its target.
+    std::uint32_t half_edge =
+        kInvalid;  ///< Leaves the vertex; kInvalid: none, and the vertex is not in the heap.
+    std::uint32_t towards = kInvalid;  ///< Its target.
     float cost = 0;
     bool held = false;           ///< A cheaper half-edge of this vertex was found illegal.
     bool held_by_error = false;  ///< One for its error.
@@ -82,7 +86,8 @@ class Decimation {
 
   void sum_quadrics() {
     for (std::uint32_t f = 0; f < input_.face_count(); ++f) {
-      const std::array<std::uint32_t, 3> v = {mesh_.origin(4 * f), mesh_.origin(4 * f + 1), mesh_.origin(4 * f + 2)};
+      const std::array<std::uint32_t, 3> v = {mesh_.origin(4 * f), mesh_.origin(4 * f + 1),
+                                              mesh_.origin(4 * f + 2)};
       const std::array<DVec3, 3> edge = {offset(v[0], v[1]), offset(v[1], v[2]), offset(v[2], v[0])};
       DVec3 normal = cross(edge[0], edge[1]);
       const double length = std::sqrt(dot(normal, normal));
@@ -100,7 +105,8 @@ class Decimation {
     }
   }
 
-  /// What p → q adds to the sum over all vertices of the quadric at its vertex: of p's planes alone, since q stays.
+  /// What p → q adds to the sum over all vertices of the quadric at its vertex: of p's planes alone, since q
+  /// stays.
   [[nodiscard]] float cost(std::uint32_t p, std::uint32_t q) const {
     const Quadric& planes = quadrics_[p];
     return static_cast<float>(std::max(planes.at(offset(p, q)) - planes.constant, 0.0));
@@ -128,22 +134,12 @@ class Decimation {
     return best;
   }
 
-  void prefetch(std::uint32_t v) const {
-    const char* quadric = reinterpret_cast<const char*>(&quadrics_[v]);
-    __builtin_prefetch(quadric);
-    __builtin_prefetch(quadric + 64);
-    __builtin_prefetch(&candidates_[v]);
-    heap_.prefetch(v);
-  }
-
   void step() {
     const std::uint32_t p = heap_.top();
-    heap_.for_runners_up([&](std::uint32_t v) {
+    // Most of the time goes on waiting for memory: what the next steps will read is asked for now.
+    heap_.for_each_near_top([this](std::uint32_t v) {
       prefetch(v);
-      mesh_.prefetch(candidates_[v].half_edge);
-      const std::uint32_t q = candidates_[v].towards;
-      __builtin_prefetch(&mesh_.position(v));
-      __builtin_prefetch(&mesh_.position(q));
+      mesh_.prefetch(candidates_[v].half_edge, v, candidates_[v].towards);
     });
     const std::uint32_t h = candidates_[p].half_edge;
     if (judge(h) == Legality::kLegal) {
@@ -181,6 +177,12 @@ class Decimation {
     settle(p, settled);
   }
 
+  void prefetch(std::uint32_t v) const {
+    detail::prefetch(&quadrics_[v]);
+    detail::prefetch(&quadrics_[v].constant);
+    detail::prefetch(&candidates_[v]);
+  }
+
   void settle(std::uint32_t v, const Candidate& candidate) {
     candidates_[v] = candidate;
     if (candidate.half_edge == kInvalid) {
@@ -202,65 +204,87 @@ class Decimation {
     const std::uint32_t a = mesh_.origin(mesh_.previous(h)), b = mesh_.origin(mesh_.previous(t));
     if (options_.max_error && error_of(p, q) > *options_.max_error) return Legality::kError;
 
-    // Link condition: p and q share the neighbours a and b, which differ, and nothing else; and the faces beyond a and b
-    // do not close the four vertices to a tetrahedron.
+    // Link condition: p and q share the neighbours a and b, which differ, and nothing else; and the faces
+    // beyond a and b do not close the four vertices to a tetrahedron.
     if (a == b) return Legality::kLink;
     ring_.clear();
     spokes_.clear();
-    const std::uint32_t stamp = ++stamp_;
+    if (++stamp_ == 0) {
+      std::fill(marks_.begin(), marks_.end(), 0u);
+      stamp_ = 1;
+    }
     for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out)) {
       spokes_.push_back(out);
       ring_.push_back(mesh_.target(out));
       if (ring_.back() != mesh_.apex()) prefetch(ring_.back());
-      marks_[ring_.back()] = stamp;
+      marks_[ring_.back()] = stamp_;
     }
     std::size_t shared = 0, valence = 1;
     for (std::uint32_t out = mesh_.around_vertex(t); out != t; out = mesh_.around_vertex(out)) {
-      shared += marks_[mesh_.target(out)] == stamp ? 1 : 0;
+      shared += marks_[mesh_.target(out)] == stamp_ ? 1 : 0;
       ++valence;
     }
     if (shared != 2 || (ring_.size() == 2 && valence == 3)) return Legality::kLink;
     return folds_over(p, q) ? Legality::kFoldOver : Legality::kLegal;
   }
 
-  /// Whether a face (p, x, y) that remains turns too far, or loses its area, when p moves to q. ring_ holds the neighbours
-  /// of p but q.
+  /// The sum of the normals of the faces around p, each as long as twice its area.
+  [[nodiscard]] DVec3 normal_at(std::uint32_t p) const {
+    DVec3 sum(0.0);
+    const std::uint32_t start = mesh_.leading(p);
+    std::uint32_t h = start;
+    do {
+      const std::uint32_t x = mesh_.target(h), y = mesh_.origin(mesh_.previous(h));
+      if (!mesh_.is_ghost(h)) sum += cross(offset(p, x), offset(p, y));
+      h = mesh_.around_vertex(h);
+    } while (h != start);
+    return sum;
+  }
+
+  /// Whether a face (p, x, y) that remains turns too far, or loses its area, when p moves to q. A face that
+  /// had none is held against the others around p. ring_ holds the neighbours of p but q.
   [[nodiscard]] bool folds_over(std::uint32_t p, std::uint32_t q) const {
     const DVec3 move = offset(p, q);
     std::uint32_t x = ring_[0];
-    DVec3 from_x = x != mesh_.apex() ? offset(p, x) : DVec3(0.0);
+    DVec3 to_x = x != mesh_.apex() ? offset(p, x) : DVec3(0.0);
     for (std::size_t i = 1; i < ring_.size(); ++i) {
       const std::uint32_t y = ring_[i];
-      const DVec3 from_y = y != mesh_.apex() ? offset(p, y) : DVec3(0.0);
+      const DVec3 to_y = y != mesh_.apex() ? offset(p, y) : DVec3(0.0);
       if (x != mesh_.apex() && y != mesh_.apex()) {
-        const DVec3 before = cross(from_x, from_y);
-        const DVec3 to_x = from_x - move, to_y = from_y - move;
-        const DVec3 after = cross(to_x, to_y);
-        const double after2 = dot(after, after), before2 = dot(before, before);
-        if (after2 <= square(kDegenerate * (dot(to_x, to_x) + dot(to_y, to_y)))) {
-          if (before2 > square(kDegenerate * (dot(from_x, from_x) + dot(from_y, from_y)))) return true;
-        } else if (dot(before, after) < cos_deviation_ * std::sqrt(before2 * after2)) {
+        const DVec3 before = cross(to_x, to_y), after = cross(to_x - move, to_y - move);
+        const bool had_area = has_area(before, to_x, to_y);
+        if (!has_area(after, to_x - move, to_y - move)) {
+          if (had_area) return true;
+        } else if (!had_area) {
+          if (dot(normal_at(p), after) < 0) return true;
+        } else if (dot(before, after) < cos_deviation_ * std::sqrt(dot(before, before) * dot(after, after))) {
           return true;
         }
       }
       x = y;
-      from_x = from_y;
+      to_x = to_y;
     }
     return false;
   }
 
-  [[nodiscard]] static double square(double x) { return x * x; }
+  /// Of a triangle with sides a and b and their cross product.
+  [[nodiscard]] static bool has_area(const DVec3& product, const DVec3& a, const DVec3& b) {
+    const double least = kDegenerate * (dot(a, a) + dot(b, b));
+    return dot(product, product) > least * least;
+  }
 
   void collapse(std::uint32_t h) {
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
-    const std::uint32_t b_to_q = mesh_.previous(mesh_.twin(h)), b_to_p = mesh_.twin(mesh_.next(mesh_.twin(h)));
+    const std::uint32_t b_to_q = mesh_.previous(mesh_.twin(h)),
+                        b_to_p = mesh_.twin(mesh_.next(mesh_.twin(h)));
     const std::uint32_t a = mesh_.origin(mesh_.previous(h)), b = mesh_.origin(b_to_q);
     error_ = std::max(error_, error_of(p, q));
     quadrics_[q].add(quadrics_[p], offset(p, q));
     faces_ -= mesh_.collapse(h);
     ++collapses_;
     settle(p, {});
-    // judge() left the other half-edges of p in spokes_; they leave q now. The shape around their targets has changed.
+    // judge() left the other half-edges of p in spokes_; they leave q now. The shape around their targets has
+    // changed.
     for (std::size_t i = 0; i < ring_.size(); ++i) {
       const std::uint32_t r = ring_[i];
       if (r == mesh_.apex()) continue;
@@ -284,7 +308,8 @@ class Decimation {
     result.rejected_fold_over = rejected_fold_over_;
     result.error = error_;
     if (faces_ > target || !options_.target_faces) {
-      const bool by_error = std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.held_by_error; });
+      const bool by_error = std::any_of(candidates_.begin(), candidates_.end(),
+                                        [](const Candidate& c) { return c.held_by_error; });
       result.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
     }
 
@@ -299,7 +324,8 @@ class Decimation {
     std::uint32_t count = 0;
     for (std::uint32_t f = 0; f < new_face.size(); ++f)
       if (mesh_.alive(f)) new_face[f] = count++;
-    std::vector<std::uint32_t> origin(3 * std::size_t{count}), twin(origin.size()), leading(result.positions.size(), kInvalid);
+    std::vector<std::uint32_t> origin(3 * std::size_t{count}), twin(origin.size()),
+        leading(result.positions.size(), kInvalid);
     for (std::uint32_t f = 0; f < new_face.size(); ++f) {
       if (new_face[f] == kInvalid) continue;
       for (std::uint32_t i = 0; i < 3; ++i) {
@@ -349,12 +375,25 @@ std::string name_of(DecimateStop stop) {
   return "no legal collapse";
 }
 
-Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const DecimateOptions& options,
-                           const Progress& progress) {
-  if (!mesh.is_triangles()) return fail(ErrorCode::kUnsuitable, "decimation takes triangles only: triangulate first");
+Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                           const DecimateOptions& options, const Progress& progress) {
+  if (!mesh.is_triangles())
+    return fail(ErrorCode::kUnsuitable, "decimation takes triangles only: triangulate first");
   if (positions.size() != mesh.vertex_count())
     return fail(ErrorCode::kUsage, "decimation needs one position for each vertex");
-  return detail::catching([&]() -> Result<Decimated> { return Decimation(mesh, positions, options).run(progress); });
+  if (options.max_error && !(*options.max_error >= 0))
+    return fail(ErrorCode::kUsage, "max_error must be at least 0");
+  if (!(options.max_normal_deviation > 0 && options.max_normal_deviation < std::numbers::pi))
+    return fail(ErrorCode::kUsage, "max_normal_deviation must lie between 0 and pi");
+  if (!(options.boundary_weight >= 0 && std::isfinite(options.boundary_weight)))
+    return fail(ErrorCode::kUsage, "boundary_weight must be at least 0 and finite");
+  if (mesh.face_count() + mesh.boundary_half_edge_count() > CollapseMesh::kMaxFaces)
+    return fail(ErrorCode::kUnsuitable, "decimation takes at most 2^30 faces and boundary edges");
+  for (const Vec3& p : positions)
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
+  return detail::catching(
+      [&]() -> Result<Decimated> { return Decimation(mesh, positions, options).run(progress); });
 }
 
 }  // namespace vkmesh

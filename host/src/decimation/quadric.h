@@ -5,8 +5,9 @@
 
 namespace vkmesh::detail {
 
-/// Σ w (n·x − d)² over planes (n, d) of weight w, as xᵀA x + 2 b·x + c with x relative to a centre that the owner knows.
-/// Centred on the vertex it belongs to, it keeps its precision however far the mesh lies from the origin.
+/// Σ w (n·x − d)² over planes (n, d) of weight w, as xᵀA x + 2 b·x + c with x relative to a centre that the
+/// owner knows. Centred on the vertex it belongs to, it keeps its precision however far the mesh lies from
+/// the origin.
 struct Quadric {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  // A
   DVec3 linear{0.0};                                      // b
@@ -31,7 +32,8 @@ struct Quadric {
   /// The value at x. Not negative: what rounding leaves below 0 is 0.
   [[nodiscard]] double at(const DVec3& x) const {
     const DVec3 ax = times(x);
-    const double value = constant + x.x * (ax.x + 2 * linear.x) + x.y * (ax.y + 2 * linear.y) + x.z * (ax.z + 2 * linear.z);
+    const double value =
+        constant + x.x * (ax.x + 2 * linear.x) + x.y * (ax.y + 2 * linear.y) + x.z * (ax.z + 2 * linear.z);
     return value > 0 ? value : 0;
   }
 

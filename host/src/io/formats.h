@@ -1,6 +1,7 @@
 // The formats, as the public functions of mesh_io.h see them.
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -112,10 +112,8 @@ class ObjReader {
         text_ = before;
         return;
       }
-      if (text_.accept('\r'))
-        static_cast<void>(text_.accept('\n'));
-      else
-        static_cast<void>(text_.accept('\n'));
+      text_.accept('\r');
+      text_.accept('\n');
     }
   }
 

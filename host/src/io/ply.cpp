@@ -363,7 +363,7 @@ class AsciiBody {
   static constexpr bool kAscii = true;
 
   AsciiBody(const Source& source, const char* from)
-      : source_(source), text_({from, static_cast<std::size_t>(source.bytes.data() + source.bytes.size() - from)}) {}
+      : source_(source), text_(source.bytes.substr(static_cast<std::size_t>(from - source.bytes.data()))) {}
 
   [[nodiscard]] const char* at() const { return text_.at(); }
   [[nodiscard]] std::uint64_t left() const { return text_.left(); }
@@ -563,7 +563,7 @@ class BodyReader {
     make_channels(element, group_properties(element, std::move(taken), file_.notes), mesh.point_channels, sinks);
 
     if constexpr (!Body::kAscii && requires { requires Body::kNative; })
-      if (is_packed_floats(element)) return packed_points(element, mesh.points);
+      if (is_packed_floats(element)) return packed_points(mesh.points);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (Source::due(i)) VKMESH_CHECK(source_.tick(body_.at()));
       body_.begin_element();
@@ -585,13 +585,12 @@ class BodyReader {
     return true;
   }
 
-  Result<void> packed_points(const Element& element, std::vector<Vec3>& points) {
+  Result<void> packed_points(std::vector<Vec3>& points) {
     const char* from = body_.at();
     if (!points.empty()) std::memcpy(points.data(), from, points.size() * sizeof(Vec3));
     body_.advance(points.size() * sizeof(Vec3));
     for (std::size_t i = 0; i < points.size(); ++i)
       if (!is_finite(points[i])) return not_finite(from + i * sizeof(Vec3), i);
-    static_cast<void>(element);
     return source_.tick(body_.at());
   }
 
@@ -616,8 +615,9 @@ class BodyReader {
     FaceCollector collector(mesh);
     std::uint64_t done = 0;
     if constexpr (!Body::kAscii && requires { requires Body::kNative; })
-      if (element.properties.size() == 1 && indices->count_type == Scalar::kUint8 && size_of(indices->type) == 4)
+      if (element.properties.size() == 1 && indices->count_type == Scalar::kUint8 && size_of(indices->type) == 4) {
         VKMESH_TRY(done, packed_triangles(element, mesh.corners));
+      }
     collector.start_with_triangles(done);
     // A corner takes two bytes of text or at least one of binary data.
     if (done == 0)

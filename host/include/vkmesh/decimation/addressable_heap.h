@@ -11,9 +11,10 @@
 
 namespace vkmesh {
 
-/// An implicit d-ary min-heap over the ids 0 … capacity − 1, each present at most once (D. B. Johnson, "Priority queues
-/// with update and finding minimum spanning trees", 1975). Equal priorities fall to the smaller id, so the order of
-/// removal depends on nothing but the entries. Eight children fill one cache line. Memory: 8 bytes an entry, 4 an id.
+/// An implicit d-ary min-heap over the ids 0 … capacity − 1, each present at most once (D. B. Johnson,
+/// "Priority queues with update and finding minimum spanning trees", 1975). Equal priorities fall to the
+/// smaller id, so the order of removal depends on nothing but the entries. Eight children fill one cache
+/// line. Memory: 8 bytes an entry, 4 an id.
 template <unsigned Arity = 8>
 class AddressableHeap {
  public:
@@ -31,14 +32,15 @@ class AddressableHeap {
   [[nodiscard]] std::uint32_t top() const { return id_of(entries_.front()); }
   [[nodiscard]] float top_priority() const { return priority_of(entries_.front()); }
 
-  void prefetch(std::uint32_t id) const { __builtin_prefetch(&slot_[id]); }
+  /// Calls f(id) for the entries next to the top: the top's successor is one of them unless a change outruns
+  /// it. For fetching ahead. O(1).
   template <class F>
-  void for_runners_up(F&& f) const {
+  void for_each_near_top(F&& f) const {
     for (std::size_t i = 1; i < std::min<std::size_t>(Arity + 1, entries_.size()); ++i) f(id_of(entries_[i]));
   }
 
-  /// Adds an entry at the end without keeping the order; `heapify` restores it. The id must be absent, the priority
-  /// no NaN. O(1).
+  /// Adds an entry at the end without keeping the order; `heapify` restores it. The id must be absent, the
+  /// priority no NaN. O(1).
   void append(std::uint32_t id, float priority) {
     slot_[id] = static_cast<std::uint32_t>(entries_.size());
     entries_.push_back(pack(id, priority));

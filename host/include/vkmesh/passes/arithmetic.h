@@ -26,27 +26,79 @@ inline constexpr float kMaxCoordinate = 1152921504606846976.0f;
   return {zero_below(v.x, limit), zero_below(v.y, limit), zero_below(v.z, limit)};
 }
 
-/// 1 / x for x in [2^-100, 2^100], within 2 ULP: Newton's iteration from an integer seed.
-[[nodiscard]] inline float reciprocal(float x) {
-  float y = std::bit_cast<float>(VKMESH_RECIPROCAL_SEED - std::bit_cast<std::uint32_t>(x));
-  for (int i = 0; i < 3; ++i) y = y * (2.0f - x * y);
-  return y + y * (1.0f - x * y);
+namespace detail {
+
+[[nodiscard]] inline std::uint32_t bits(float x) {
+  return std::bit_cast<std::uint32_t>(x);
+}
+[[nodiscard]] inline float from_bits(std::uint32_t b) {
+  return std::bit_cast<float>(b);
 }
 
-/// 1 / √x for x in [2^-122, 2^100], within 2 ULP: Newton's iteration from an integer seed.
-[[nodiscard]] inline float reciprocal_root(float x) {
-  float y = std::bit_cast<float>(VKMESH_RECIPROCAL_ROOT_SEED - (std::bit_cast<std::uint32_t>(x) >> 1));
-  const float half = 0.5f * x;
+/// x − a·b, nearly exact where a·b is close to x: the products of 12-bit halves are exact (T. J. Dekker, "A
+/// floating-point technique for extending the available precision", 1971, §5; halved by masking).
+[[nodiscard]] inline float residual(float x, float a, float b) {
+  const float ah = from_bits(bits(a) & 0xfffff000u), al = a - ah;
+  const float bh = from_bits(bits(b) & 0xfffff000u), bl = b - bh;
+  return (((x - ah * bh) - ah * bl) - al * bh) - al * bl;
+}
+
+/// 1 / √m for m in [1, 4), within 2 ULP.
+[[nodiscard]] inline float rough_reciprocal_root(float m) {
+  float y = from_bits(VKMESH_RECIPROCAL_ROOT_SEED - (bits(m) >> 1));
+  const float half = 0.5f * m;
   for (int i = 0; i < 3; ++i) y = y * (1.5f - (half * y) * y);
-  return y + y * (0.5f - (half * y) * y);
+  return y;
 }
 
-/// √x for x = 0 or x in [2^-122, 2^100], within 2 ULP.
+/// The part m in [1, 4) of x = m · 4^k.
+[[nodiscard]] inline float even_mantissa(std::uint32_t x) {
+  return from_bits((x & 0x007fffffu) | ((x & 0x00800000u) != 0u ? 0x3f800000u : 0x40000000u));
+}
+
+}  // namespace detail
+
+/// 1 / x within 0.5001 ULP, by Newton's iteration from an integer seed and one step with an exact residual.
+/// 0 where x is zero, subnormal or not finite, and where 1 / x would be subnormal.
+[[nodiscard]] inline float reciprocal(float x) {
+  const std::uint32_t magnitude = detail::bits(x) & 0x7fffffffu, exponent = magnitude >> 23;
+  const float m = detail::from_bits((magnitude & 0x007fffffu) | 0x3f800000u);
+  float y = detail::from_bits(VKMESH_RECIPROCAL_SEED - detail::bits(m));
+  for (int i = 0; i < 3; ++i) y = y * (2.0f - m * y);
+  y = y + y * detail::residual(1.0f, m, y);
+  // y lies in [1/2, 1]: shift its exponent by that of 1 / x, in integers, so that no step can be subnormal.
+  const std::uint32_t result = detail::bits(y) + (127u << 23) - (exponent << 23);
+  const bool defined = exponent - 1u < 253u && (result & 0x7f800000u) != 0u;
+  return defined ? detail::from_bits(result | (detail::bits(x) & 0x80000000u)) : 0.0f;
+}
+
+/// 1 / √x within 0.5001 ULP, by the same means. 0 unless x is positive, normal and finite.
+[[nodiscard]] inline float reciprocal_root(float x) {
+  const std::uint32_t b = detail::bits(x), exponent = b >> 23;
+  const float m = detail::even_mantissa(b);
+  const float y = detail::rough_reciprocal_root(m);
+  const float square = y * y;
+  const float r = detail::residual(1.0f, m, square) + m * detail::residual(square, y, y);
+  const float refined = y + y * (0.5f * r);
+  return exponent - 1u < 254u
+             ? detail::from_bits(detail::bits(refined) + (127u << 23) - (((exponent + 127u) >> 1) << 23))
+             : 0.0f;
+}
+
+/// √x, correctly rounded, by the same means. 0 unless x is positive, normal and finite.
 [[nodiscard]] inline float root(float x) {
-  return x == 0.0f ? 0.0f : x * reciprocal_root(x);
+  const std::uint32_t b = detail::bits(x), exponent = b >> 23;
+  const float m = detail::even_mantissa(b);
+  const float y = detail::rough_reciprocal_root(m);
+  const float s = m * y;
+  const float refined = s + (0.5f * y) * detail::residual(m, s, s);
+  return exponent - 1u < 254u
+             ? detail::from_bits(detail::bits(refined) - (127u << 23) + (((exponent + 127u) >> 1) << 23))
+             : 0.0f;
 }
 
-/// The angle in [0, π/2] of the vector (x, y), for x and y in {0} ∪ [2^-61, 2^60], x + y > 0; within 4 ULP.
+/// The angle in [0, π/2] of the vector (x, y), for x and y in {0} ∪ [2^-61, 2^60]; within 4 ULP. 0 for (0,
+/// 0).
 [[nodiscard]] inline float first_quadrant_angle(float y, float x) {
   const bool steep = y > x;
   const float t = (steep ? x : y) * reciprocal(steep ? y : x);

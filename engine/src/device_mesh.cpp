@@ -1,0 +1,149 @@
+#include <cstring>
+
+#include <vkmesh/engine/device_mesh.h>
+#include <vkmesh/passes/arithmetic.h>
+#include <vkmesh/vertex_corners.h>
+
+#include "catching.h"
+
+namespace vkmesh {
+namespace {
+
+/// Bytes of each buffer of a DeviceMesh; 0 for those that no pass asks for.
+struct Sizes {
+  std::uint64_t positions = 0, smoothed_positions = 0, corners = 0, twins = 0, neighbour_offsets = 0,
+                neighbour_ids = 0, boundary_bits = 0, corner_offsets = 0, corner_half_edges = 0,
+                face_vectors = 0, vertex_normals = 0, half_edge_angles = 0, vertex_maxima = 0;
+
+  Sizes(const HalfEdgeMesh& mesh, const MeshPasses& passes, std::uint64_t directed_edges) {
+    const std::uint64_t vertices = mesh.vertex_count(), half_edges = mesh.half_edge_count();
+    positions = 12 * vertices;
+    if (passes.laplacian_smoothing) {
+      smoothed_positions = positions;
+      neighbour_offsets = 4 * (vertices + 1);
+      neighbour_ids = 4 * directed_edges;
+      boundary_bits = 4 * ((vertices + 31) / 32);
+    }
+    if (passes.vertex_normals || passes.dihedral_angles) {
+      corners = 4 * half_edges;
+      corner_offsets = 4 * (vertices + 1);
+      corner_half_edges = 4 * half_edges;
+      face_vectors = 12 * mesh.face_count();
+    }
+    if (passes.vertex_normals) vertex_normals = positions;
+    if (passes.dihedral_angles) {
+      twins = 4 * half_edges;
+      half_edge_angles = 4 * half_edges;
+      vertex_maxima = 4 * vertices;
+    }
+  }
+
+  [[nodiscard]] std::uint64_t total() const {
+    return positions + smoothed_positions + corners + twins + neighbour_offsets + neighbour_ids +
+           boundary_bits + corner_offsets + corner_half_edges + face_vectors + vertex_normals +
+           half_edge_angles + vertex_maxima;
+  }
+};
+
+Result<void> make(Context& context, Buffer& buffer, std::uint64_t bytes, const char* name) {
+  if (bytes == 0) return {};
+  VKMESH_TRY(buffer, Buffer::create(context, bytes, BufferMemory::kDevice, name));
+  return {};
+}
+
+Result<void> fill(Context& context, Buffer& buffer, std::uint64_t bytes, const char* name,
+                  std::span<const std::uint32_t> values) {
+  if (bytes == 0) return {};
+  VKMESH_CHECK(make(context, buffer, bytes, name));
+  return buffer.upload_values(values);
+}
+
+template <class T>
+Result<std::vector<T>> values_of(const Buffer& buffer, std::size_t count, bool made, const char* pass) {
+  if (!made) return fail(ErrorCode::kUsage, std::string("the mesh was not made for the pass ") + pass);
+  return detail::catching([&]() -> Result<std::vector<T>> {
+    std::vector<T> values(count);
+    VKMESH_CHECK(buffer.download_values<T>(values));
+    return values;
+  });
+}
+
+}  // namespace
+
+std::uint64_t DeviceMesh::estimate_memory(const HalfEdgeMesh& mesh, const MeshPasses& passes) {
+  // Each boundary half-edge stands for two directed edges.
+  const std::uint64_t directed =
+      passes.laplacian_smoothing ? mesh.half_edge_count() + mesh.boundary_half_edge_count() : 0;
+  return Sizes(mesh, passes, directed).total();
+}
+
+Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh,
+                                      std::span<const Vec3> positions, const MeshPasses& passes) {
+  return detail::catching([&]() -> Result<DeviceMesh> {
+    if (!mesh.is_triangles())
+      return fail(ErrorCode::kUnsuitable, "a device takes triangles only: triangulate the polygons first");
+    DeviceMesh result;
+    result.vertices_ = static_cast<std::uint32_t>(mesh.vertex_count());
+    result.faces_ = static_cast<std::uint32_t>(mesh.face_count());
+    result.passes_ = passes;
+
+    NodeNeighbours neighbours;
+    if (passes.laplacian_smoothing) {
+      VKMESH_TRY(neighbours, node_neighbours(mesh));
+    }
+    VertexCorners corners;
+    if (passes.vertex_normals || passes.dihedral_angles) {
+      VKMESH_TRY(corners, vertex_corners(mesh));
+    }
+    const Sizes bytes(mesh, passes, neighbours.ids.size());
+    VKMESH_CHECK(make(context, result.positions_, bytes.positions, "positions"));
+    VKMESH_CHECK(result.upload_positions(positions));
+    VKMESH_CHECK(make(context, result.smoothed_positions_, bytes.smoothed_positions, "smoothed positions"));
+    VKMESH_CHECK(fill(context, result.corners_, bytes.corners, "corners", mesh.origins()));
+    VKMESH_CHECK(fill(context, result.twins_, bytes.twins, "twins", mesh.twins()));
+    VKMESH_CHECK(fill(context, result.neighbour_offsets_, bytes.neighbour_offsets, "neighbour offsets",
+                      neighbours.offsets));
+    VKMESH_CHECK(fill(context, result.neighbour_ids_, bytes.neighbour_ids, "neighbour ids", neighbours.ids));
+    VKMESH_CHECK(
+        fill(context, result.boundary_bits_, bytes.boundary_bits, "boundary bits", neighbours.boundary_bits));
+    VKMESH_CHECK(
+        fill(context, result.corner_offsets_, bytes.corner_offsets, "corner offsets", corners.offsets));
+    VKMESH_CHECK(fill(context, result.corner_half_edges_, bytes.corner_half_edges, "corner half-edges",
+                      corners.half_edges));
+    VKMESH_CHECK(make(context, result.face_vectors_, bytes.face_vectors, "face vectors"));
+    VKMESH_CHECK(make(context, result.vertex_normals_, bytes.vertex_normals, "vertex normals"));
+    VKMESH_CHECK(make(context, result.half_edge_angles_, bytes.half_edge_angles, "half-edge angles"));
+    VKMESH_CHECK(make(context, result.vertex_maxima_, bytes.vertex_maxima, "vertex maxima"));
+    return result;
+  });
+}
+
+Result<void> DeviceMesh::upload_positions(std::span<const Vec3> positions) {
+  return detail::catching([&]() -> Result<void> {
+    if (positions.size() != vertices_)
+      return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " positions for " +
+                                         std::to_string(vertices_) + " vertices");
+    // Prepared apart, so that refused positions leave those of the device as they were.
+    std::vector<Vec3> prepared(positions.size());
+    VKMESH_CHECK(prepare_positions(positions, prepared));
+    return positions_.upload_values<Vec3>(prepared);
+  });
+}
+
+Result<std::vector<Vec3>> DeviceMesh::download_positions() const {
+  return values_of<Vec3>(positions_, vertices_, true, "");
+}
+
+Result<std::vector<Vec3>> DeviceMesh::download_vertex_normals() const {
+  return values_of<Vec3>(vertex_normals_, vertices_, passes_.vertex_normals, "vertex_normals");
+}
+
+Result<std::vector<float>> DeviceMesh::download_half_edge_angles() const {
+  return values_of<float>(half_edge_angles_, half_edge_count(), passes_.dihedral_angles, "dihedral_angles");
+}
+
+Result<std::vector<float>> DeviceMesh::download_vertex_maxima() const {
+  return values_of<float>(vertex_maxima_, vertices_, passes_.dihedral_angles, "dihedral_angles");
+}
+
+}  // namespace vkmesh
