@@ -37,16 +37,15 @@ class HostBackend : public Backend {
   Job& job_;
 };
 
-void report_host(Job& job, const char* why) {
+void report_host(Job& job) {
   job.json()["device"] = {{"name", "cpu"}, {"driver", "vkmesh " VKMESH_VERSION}, {"type", "host"}};
-  job.row("device", std::string("cpu") + why);
 }
 
 }  // namespace
 
 void use_host(Job& job) {
   const std::string& asked = job.options().device;
-  report_host(job, "");
+  report_host(job);
   if (asked != "auto" && asked != "cpu")
     job.note("this subcommand runs on the host: the device " + asked + " was not used");
 }
@@ -65,7 +64,8 @@ Result<std::unique_ptr<Backend>> open_backend(Job& job) {
                   "there is no device " + asked + ": this program was built without Vulkan");
 #endif
   }
-  report_host(job, why);
+  report_host(job);
+  job.row("device", std::string("cpu") + why);
   return std::make_unique<HostBackend>(job);
 }
 

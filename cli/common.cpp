@@ -226,7 +226,7 @@ Result<void> Job::print() {
   for (const char* name : kTimings)
     if (const Json& ms = json_["timings_ms"][name]; !ms.is_null())
       times += std::string(times.empty() ? "" : ", ") + name + " " + milliseconds(ms.get<double>());
-  row("time", times);
+  if (!json_["input"].is_null()) row("time", times);
   for (const std::string& sentence : notes_) row("note", sentence);
 
   std::size_t width = 0;
@@ -247,23 +247,24 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
     command
         .add_option("IN", options.input,
                     "Mesh to read: PLY, OBJ, OFF or STL, also gzipped; - for standard input")
+        ->type_name("")
         ->required();
   if (has_output)
     command
         .add_option("OUT", options.output,
                     "Mesh to write: .ply, .obj, .off, .stl, also with .gz; - for a PLY on standard output")
+        ->type_name("")
         ->required();
   command
       .add_option("--device", options.device,
-                  "Where compute passes run: auto (a GPU, else the CPU), cpu, or the index or a part of the "
-                  "name of a "
-                  "Vulkan device as 'vkmesh devices' lists them")
-      ->type_name("auto|cpu|INDEX|NAME")
-      ->capture_default_str();
-  command.add_option("--progress", options.progress, "Show progress on standard error (auto: on a terminal)")
-      ->type_name("auto|always|never")
-      ->check(CLI::IsMember({"auto", "always", "never"}, CLI::ignore_case))
-      ->capture_default_str();
+                  "Where compute passes run: auto (default; a GPU, else the CPU), cpu, or\n"
+                  "the index or a part of the name of a Vulkan device (see vkmesh devices)")
+      ->type_name("DEVICE");
+  command
+      .add_option("--progress", options.progress,
+                  "Progress on standard error: auto (default; on a terminal), always, never")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
   command.add_flag("--json", options.json,
                    "Print one JSON object on standard output, and nothing else there");
   command.add_flag("--quiet", options.quiet, "Print nothing but errors");
@@ -284,7 +285,7 @@ void print_error(const Error& error, bool json) {
 
 std::string grouped(std::size_t n) {
   std::string text = std::to_string(n);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
   return text;
 }
 

@@ -37,7 +37,7 @@ void add_convert(CLI::App& app, Program& program) {
       "The extension of OUT names its format. Attributes that the format cannot hold are left out, and "
       "named.\n"
       "The mesh is not judged: defects pass through.\n\n"
-      "Example:\n  vkmesh convert data/dragon/dragon_vrip_res4.ply.gz dragon.obj");
+      "Example:\n  vkmesh convert data/dragon/dragon_vrip.ply.gz dragon.obj");
   add_common_options(*command, program.options, true, true);
   const auto options = std::make_shared<ConvertOptions>();
   command->add_flag("--triangulate", options->triangulate,

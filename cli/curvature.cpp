@@ -39,7 +39,7 @@ void add_curvature(CLI::App& app, Program& program) {
       "on itself.\n"
       "Polygons stay; their angles are those of the triangles they are cut into. Every device gives the same "
       "bytes.\n\n"
-      "Example:\n  vkmesh curvature data/dragon/dragon_vrip_res4.ply.gz curvature.ply");
+      "Example:\n  vkmesh curvature data/dragon/dragon_vrip.ply.gz curvature.ply");
   add_common_options(*command, program.options, true, true);
   command->callback([&program] {
     program.command = "curvature";

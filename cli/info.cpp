@@ -151,7 +151,7 @@ void add_info(CLI::App& app, Program& program) {
       "The Euler characteristic v - e + f leaves isolated points aside; the genus is that of a closed mesh "
       "of one "
       "component.\n\n"
-      "Example:\n  vkmesh info data/dragon/dragon_vrip_res4.ply.gz");
+      "Example:\n  vkmesh info data/dragon/dragon_vrip.ply.gz");
   add_common_options(*command, program.options, true, false);
   command->callback([&program] {
     program.command = "info";

@@ -36,7 +36,7 @@ void add_normals(CLI::App& app, Program& program) {
       "Written as the PLY properties nx ny nz (OBJ: vn), beside what the input holds. Polygons stay; their "
       "normals "
       "are those of\nthe triangles they are cut into. Every device gives the same bytes.\n\n"
-      "Example:\n  vkmesh normals data/dragon/dragon_vrip_res4.ply.gz normals.ply");
+      "Example:\n  vkmesh normals data/dragon/dragon_vrip.ply.gz normals.ply");
   add_common_options(*command, program.options, true, true);
   command->callback([&program] {
     program.command = "normals";

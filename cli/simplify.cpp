@@ -116,25 +116,28 @@ void add_simplify(CLI::App& app, Program& program) {
       "The cheapest edge is collapsed into one of its ends, again and again, by quadric error. No new points "
       "are made;\n"
       "point attributes stay with their points. Runs on the host whatever --device says.\n\n"
-      "Example:\n  vkmesh simplify data/dragon/dragon_vrip_res4.ply.gz small.ply --ratio 0.1");
+      "Example:\n  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1");
   add_common_options(*command, program.options, true, true);
   const auto options = std::make_shared<SimplifyOptions>();
   CLI::Option* ratio =
       command->add_option("--ratio", options->ratio, "Stop at this share of the triangles, from 0 to 1")
-          ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--faces", options->faces, "Stop at this number of triangles")->excludes(ratio);
+          ->type_name("R")
+          ->check(CLI::Range(0.0, 1.0).description(""));
+  command->add_option("--faces", options->faces, "Stop at this number of triangles")
+      ->type_name("N")
+      ->excludes(ratio);
   command
       ->add_option("--error", options->error,
-                   "Stop before a collapse of a larger error, in units of the file's coordinates: the root "
-                   "of the mean "
-                   "squared distance to the planes of the faces that a point stands for")
+                   "Stop before a collapse of a larger error, in units of the file's coordinates: the\n"
+                   "root of the mean squared distance to the planes of the faces a point stands for")
+      ->type_name("E")
       ->check(CLI::NonNegativeNumber);
   command
-      ->add_option(
-          "--max-normal-deviation", options->max_normal_deviation,
-          "Do no collapse that turns a remaining face by more than this many degrees, between 0 and 180")
-      ->check(CLI::Range(0.0, 180.0))
-      ->capture_default_str();
+      ->add_option("--max-normal-deviation", options->max_normal_deviation,
+                   "Do no collapse that turns a remaining face by more than this, in degrees;\n"
+                   "between 0 and 180, default 75")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 180.0).description(""));
   command->callback([&program, options] {
     program.command = "simplify";
     program.action = [options](Job& job) { return run(job, *options); };

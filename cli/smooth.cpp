@@ -50,16 +50,16 @@ void add_smooth(CLI::App& app, Program& program) {
       "Polygons "
       "stay; their\npoints have the neighbours of the triangles they are cut into. Every device gives the "
       "same bytes.\n\n"
-      "Example:\n  vkmesh smooth data/dragon/dragon_vrip_res4.ply.gz smooth.ply --lambda 0.5 --iterations "
+      "Example:\n  vkmesh smooth data/dragon/dragon_vrip.ply.gz smooth.ply --lambda 0.5 --iterations "
       "10");
   add_common_options(*command, program.options, true, true);
   const auto options = std::make_shared<LaplacianSmoothingOptions>();
-  command->add_option("--lambda", options->lambda, "Share of the way in each step, from 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--iterations", options->iterations, "Number of steps, from 0 to 1000000")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
+  command->add_option("--lambda", options->lambda, "Share of the way in each step, from 0 to 1; default 0.5")
+      ->type_name("L")
+      ->check(CLI::Range(0.0, 1.0).description(""));
+  command->add_option("--iterations", options->iterations, "Number of steps, from 0 to 1000000; default 10")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000000).description(""));
   command->add_flag_callback(
       "--free-boundary", [options] { options->fix_boundary = false; }, "Move boundary points as well");
   command->callback([&program, options] {

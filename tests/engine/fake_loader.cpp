@@ -20,7 +20,9 @@ PFN_vkGetInstanceProcAddr system_loader() {
   return loaded ? loaded->vkGetInstanceProcAddr : nullptr;
 }
 
-FakeLoader::FakeLoader() { current = this; }
+FakeLoader::FakeLoader() {
+  current = this;
+}
 
 FakeLoader::~FakeLoader() {
   current = nullptr;
@@ -38,7 +40,8 @@ PFN_vkVoidFunction FakeLoader::entry(VkInstance instance, const char* name) {
   if (instance != VK_NULL_HANDLE) last_instance = instance;
   const auto found = current->replaced_.find(name);
   if (found != current->replaced_.end()) return found->second;
-  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) return reinterpret_cast<PFN_vkVoidFunction>(device_entry);
+  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(device_entry);
   return system_loader()(instance, name);
 }
 
@@ -51,8 +54,8 @@ PFN_vkVoidFunction FakeLoader::device_entry(VkDevice device, const char* name) {
 
 PFN_vkVoidFunction FakeLoader::find_real(const char* name) {
   if (last_device != VK_NULL_HANDLE) {
-    const auto device_functions = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
-        system_loader()(last_instance, "vkGetDeviceProcAddr"));
+    const auto device_functions =
+        reinterpret_cast<PFN_vkGetDeviceProcAddr>(system_loader()(last_instance, "vkGetDeviceProcAddr"));
     if (const auto function = device_functions(last_device, name)) return function;
   }
   return system_loader()(last_instance, name);

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+
 #include <vulkan/vulkan_core.h>
 
 #include <vkmesh/engine/context.h>

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -54,7 +55,7 @@ TEMPLATE_TEST_CASE("an addressable heap does as a sorted set under random operat
     }
     heap.heapify();
     for (int i = 0; i < 3000; ++i) {
-      const std::uint32_t id = random() % kIds;
+      const auto id = static_cast<std::uint32_t>(random() % kIds);
       switch (random() % 4) {
         case 0:
         case 1: {

@@ -1,23 +1,29 @@
+#define CATCH_CONFIG_EXTERNAL_INTERFACES
 #include "support/device.h"
 
-#include <catch2/catch.hpp>
+#include <atomic>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
 
 namespace vkmesh::test {
 namespace {
 
-struct ValidationLog {
+/// What the layer said, and whether the test that runs now touched a device. Contexts report from any thread.
+struct Watch {
   std::mutex mutex;
   std::vector<std::string> messages;
+  std::atomic<bool> device_used{false};
 };
 
-ValidationLog& validation_log() {
-  static ValidationLog log;
-  return log;
+Watch& watch() {
+  static Watch instance;
+  return instance;
 }
 
 std::unique_ptr<Context>& shared_context() {
@@ -25,45 +31,65 @@ std::unique_ptr<Context>& shared_context() {
   return context;
 }
 
-/// Names the device at the start of a run, and at its end says how many device tests ran on it. The context is closed
-/// before the verdict, so that what the layer says of objects left behind counts too.
+Result<void> open_shared_context() {
+  if (shared_context()) return {};
+  VKMESH_TRY(shared_context(), Context::create(device_options()));
+  return {};
+}
+
+/// Names the device at the start of a run, counts the tests that used one, and judges the run by what the
+/// layer said.
 class DeviceListener : public Catch::TestEventListenerBase {
  public:
-  using TestEventListenerBase::TestEventListenerBase;
+  using Catch::TestEventListenerBase::TestEventListenerBase;
+
+  void testRunStarting(const Catch::TestRunInfo& info) override {
+    Catch::TestEventListenerBase::testRunStarting(info);
+    const auto opened = open_shared_context();
+    if (!opened) {
+      std::cerr << "device: none: " << opened.error().describe() << std::endl;
+      return;
+    }
+    const DeviceInfo& device = shared_context()->info();
+    std::cerr << "device: " << device.name << ", " << device.driver << ", Vulkan " << device.api_version
+              << ", " << name_of(device.type) << std::endl;
+    report("the start");
+  }
 
   void testCaseStarting(const Catch::TestCaseInfo& info) override {
-    TestEventListenerBase::testCaseStarting(info);
-    for (const std::string& tag : info.lcaseTags) {
-      if (tag != "device") continue;
-      if (device_tests_++ == 0) announce();
-    }
+    Catch::TestEventListenerBase::testCaseStarting(info);
+    watch().device_used = false;
+  }
+
+  void testCaseEnded(const Catch::TestCaseStats& stats) override {
+    Catch::TestEventListenerBase::testCaseEnded(stats);
+    if (watch().device_used) ++device_tests_;
+    report("the test '" + stats.testInfo.name + "'");
   }
 
   void testRunEnded(const Catch::TestRunStats& stats) override {
-    TestEventListenerBase::testRunEnded(stats);
-    std::cerr << "device tests: " << device_tests_ << " run" << std::endl;
+    Catch::TestEventListenerBase::testRunEnded(stats);
+    // Closed before the verdict: the layer then names the objects that were left behind.
     shared_context().reset();
-    const std::vector<std::string> left = take_validation_log();
-    for (const std::string& message : left) std::cerr << "validation, outside of any test: " << message << '\n';
-    std::cerr.flush();
-    // The framework has no way to fail a run from here.
-    if (!left.empty()) std::_Exit(1);
+    report("the end");
+    std::cerr << "device tests: " << device_tests_ << " run" << std::endl;
+    if (!said_something_) return;
+    std::cerr << "the run fails: the validation layer was not silent" << std::endl;
+    // The framework lets no listener fail a run.
+    std::_Exit(1);
   }
 
  private:
-  static void announce() {
-    auto context = Context::create(device_options());
-    if (!context) {
-      std::cerr << "device: none: " << context.error().describe() << std::endl;
-      return;
+  void report(const std::string& when) {
+    const std::lock_guard lock(watch().mutex);
+    for (const std::string& message : std::exchange(watch().messages, {})) {
+      std::cerr << "validation, in " << when << ": " << message << std::endl;
+      said_something_ = true;
     }
-    shared_context() = *std::move(context);
-    const DeviceInfo& info = shared_context()->info();
-    std::cerr << "device: " << info.name << ", " << info.driver << ", Vulkan " << info.api_version << ", "
-              << name_of(info.type) << std::endl;
   }
 
   int device_tests_ = 0;
+  bool said_something_ = false;
 };
 
 CATCH_REGISTER_LISTENER(DeviceListener)
@@ -76,32 +102,22 @@ std::string device_name() {
 }
 
 ContextOptions device_options() {
+  watch().device_used = true;
   ContextOptions options;
   options.device = device_name();
   options.validation = true;
   options.on_validation_message = [](const std::string& message) {
-    const std::lock_guard lock(validation_log().mutex);
-    validation_log().messages.push_back(message);
+    const std::lock_guard lock(watch().mutex);
+    watch().messages.push_back(message);
   };
   return options;
 }
 
 Context& test_context() {
-  if (!shared_context()) {
-    auto context = Context::create(device_options());
-    if (!context) FAIL(context.error().describe());
-    shared_context() = *std::move(context);
-  }
+  const auto opened = open_shared_context();
+  if (!opened) FAIL(opened.error().describe());
+  watch().device_used = true;
   return *shared_context();
-}
-
-std::vector<std::string> take_validation_log() {
-  const std::lock_guard lock(validation_log().mutex);
-  return std::exchange(validation_log().messages, {});
-}
-
-DeviceTest::~DeviceTest() {
-  for (const std::string& message : take_validation_log()) FAIL_CHECK("validation: " << message);
 }
 
 }  // namespace vkmesh::test

@@ -1,6 +1,7 @@
 #include <vkmesh/passes/vertex_normals.h>
 
 #include "catching.h"
+#include "passes/blocks.h"
 #include "passes/pass_input.h"
 
 namespace vkmesh {
@@ -16,7 +17,7 @@ Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<con
       const Vec3 area = area_vector(p[corners[h]], p[corners[h + 1]], p[corners[h + 2]]);
       for (std::size_t i = 0; i < 3; ++i) normals[corners[h + i]] += area;
     }
-    for (Vec3& n : normals) n = unit_vector(n);
+    detail::to_unit_vectors(normals);
     return normals;
   });
 }

@@ -135,11 +135,13 @@ namespace detail {
 [[nodiscard]] inline Vec3 unit_vector(Vec3 v) {
   const auto magnitude = [](float x) { return std::bit_cast<std::uint32_t>(x) & 0x7fffffffu; };
   const std::uint32_t largest = std::max(std::max(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
-  if (largest == 0u || largest >= 0x7f800000u) return Vec3(0.0f);
+  const bool defined = largest - 1u < 0x7f7fffffu;
   // A power of two brings the largest component into [1, 4): squares then neither overflow nor vanish.
   const float scale = std::bit_cast<float>(std::max(0x7f000000u - (largest & 0x7f800000u), 0x00800000u));
   const Vec3 w = zero_below(v * scale, VKMESH_TINY_DIRECTION);
-  return w * reciprocal_root(squared_length(w));
+  const float r = reciprocal_root(squared_length(w));
+  // No branch, so that a loop of these fills vector registers.
+  return {defined ? w.x * r : 0.0f, defined ? w.y * r : 0.0f, defined ? w.z * r : 0.0f};
 }
 
 /// The angle between two unit vectors, in [0, π], within 8 ULP; 0 where either is the zero vector.

@@ -1,0 +1,34 @@
+#include "passes/blocks.h"
+
+#include <algorithm>
+
+#include <vkmesh/passes/arithmetic.h>
+
+// Compiled once for each instruction set, chosen when the program starts. The bytes do not change: none of
+// these sets brings fused multiply-add, and lanes do not mix. Sanitizers run before the choice can be made.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define VKMESH_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define VKMESH_CLONES
+#endif
+
+namespace vkmesh::detail {
+
+VKMESH_CLONES void to_unit_vectors(std::span<Vec3> vectors) {
+  // Through a copy that cannot alias, or the compiler gives up on vector registers.
+  constexpr std::size_t kBlock = 128;
+  Vec3 in[kBlock], out[kBlock];
+  for (std::size_t first = 0; first < vectors.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, vectors.size() - first);
+    std::copy_n(vectors.begin() + static_cast<std::ptrdiff_t>(first), count, in);
+    for (std::size_t i = 0; i < count; ++i) out[i] = unit_vector(in[i]);
+    std::copy_n(out, count, vectors.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+}
+
+VKMESH_CLONES void angles_between(std::span<const Vec3> a, std::span<const Vec3> b, std::span<float> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = angle_between(a[i], b[i]);
+}
+
+}  // namespace vkmesh::detail

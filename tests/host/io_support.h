@@ -1,0 +1,137 @@
+// What the tests of reading and writing share.
+#pragma once
+
+#include <stdlib.h>
+
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <vkmesh/io/mesh_io.h>
+
+#include "support/shapes.h"
+
+namespace vkmesh::test {
+
+inline std::span<const std::byte> as_bytes(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+inline std::string as_text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+inline MeshFile parse_file(std::string_view content, const std::string& name) {
+  auto file = parse_mesh(as_bytes(content), name);
+  if (!file) FAIL(file.error().describe());
+  return *std::move(file);
+}
+
+inline IndexedFaceSet parse(std::string_view content, const std::string& name) {
+  auto mesh = to_indexed_face_set(parse_file(content, name));
+  if (!mesh) FAIL(mesh.error().describe());
+  return *std::move(mesh);
+}
+
+/// The error that the content must give.
+inline Error parse_error(std::string_view content, const std::string& name) {
+  auto file = parse_mesh(as_bytes(content), name);
+  if (file) FAIL(name << " was accepted");
+  return file.error();
+}
+
+inline std::string encode(const IndexedFaceSet& mesh, const WriteOptions& options) {
+  auto bytes = encode_mesh(mesh, options);
+  if (!bytes) FAIL(bytes.error().describe());
+  return as_text(*bytes);
+}
+
+inline WriteOptions write_as(FileFormat format, FileEncoding encoding, bool gzip = false) {
+  WriteOptions options;
+  options.format = format;
+  options.encoding = encoding;
+  options.gzip = gzip;
+  return options;
+}
+
+inline void require_same_channels(const std::vector<Channel>& a, const std::vector<Channel>& b) {
+  REQUIRE(a.size() == b.size());
+  for (const Channel& channel : a) {
+    const Channel* other = find_channel(b, channel.name);
+    INFO("channel " << channel.name);
+    REQUIRE(other != nullptr);
+    CHECK(channel.components == other->components);
+    CHECK(channel.values == other->values);
+  }
+}
+
+/// Every array alike, in every bit where it is a position.
+inline void require_same(const IndexedFaceSet& a, const IndexedFaceSet& b) {
+  REQUIRE(a.points.size() == b.points.size());
+  CHECK((a.points.empty() || std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0));
+  CHECK(a.corners == b.corners);
+  CHECK(a.face_offsets == b.face_offsets);
+  require_same_channels(a.point_channels, b.point_channels);
+  require_same_channels(a.corner_channels, b.corner_channels);
+  require_same_channels(a.face_channels, b.face_channels);
+}
+
+/// A triangle, a quad and a pentagon over seven points, one of them isolated.
+inline IndexedFaceSet mixed_polygons() {
+  IndexedFaceSet mesh;
+  mesh.points = {{0, 0, 0}, {1, 0.1f, 0}, {1, 1, -1e-20f}, {-0.0f, 1, 3e20f}, {2, 2, 1.0f / 3}, {0, 3, 1}, {5, 5, 5}};
+  mesh.corners = {0, 1, 2, 0, 2, 4, 3, 1, 2, 4, 5, 3};
+  mesh.face_offsets = {0, 3, 7, 12};
+  return mesh;
+}
+
+template <class T>
+std::vector<T> ramp(std::size_t count, double scale) {
+  std::vector<T> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<T>(static_cast<double>(i) * scale));
+  return values;
+}
+
+/// A folder that goes away with its content.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "vkmesh-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) FAIL("no temporary folder");
+    path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline void write_bytes(const std::filesystem::path& path, std::string_view content) {
+  std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+}
+
+inline std::string read_bytes(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace vkmesh::test
