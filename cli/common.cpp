@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -268,6 +269,27 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
   command.add_flag("--json", options.json,
                    "Print one JSON object on standard output, and nothing else there");
   command.add_flag("--quiet", options.quiet, "Print nothing but errors");
+}
+
+CLI::Validator number_between(double low, double high) {
+  const auto check = [low, high](std::string& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good =
+        error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+    return good ? std::string() : "'" + text + "' is no number between " + brief(low) + " and " + brief(high);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator count_up_to(std::uint64_t high) {
+  const auto check = [high](std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc() && end == text.data() + text.size() && value <= high;
+    return good ? std::string() : "'" + text + "' is no whole number between 0 and " + std::to_string(high);
+  };
+  return CLI::Validator(check, "");
 }
 
 void print_error(const Error& error, bool json) {

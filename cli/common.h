@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -119,6 +120,10 @@ class Job {
 
 /// Adds IN, and OUT when asked for, and the options that all subcommands have.
 void add_common_options(CLI::App& command, CommonOptions& options, bool has_input, bool has_output);
+
+/// For options: a number in [low, high], which "nan" is not; a number of decimal digits, at most `high`.
+[[nodiscard]] CLI::Validator number_between(double low, double high);
+[[nodiscard]] CLI::Validator count_up_to(std::uint64_t high);
 
 /// Prints an error that no Job stands for: the sentence on standard error, and the object on standard output.
 void print_error(const Error& error, bool json);

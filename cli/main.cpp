@@ -37,6 +37,11 @@ int run(int argc, char** argv) {
        {add_info, add_convert, add_normals, add_curvature, add_smooth, add_simplify, add_devices})
     add(app, program);
 
+  // The parser would only say that a subcommand is required.
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr)
+    return fail_with(
+        {ErrorCode::kUsage, std::string("there is no subcommand ") + argv[1] + " (see vkmesh --help)", {}},
+        wants_json(argc, argv));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -54,6 +59,8 @@ int run(int argc, char** argv) {
   Result<void> done = program.action(job);
   if (done) done = job.print();
   if (done) return 0;
+  if (done.error().code == ErrorCode::kInterrupted)
+    done.error() = {ErrorCode::kInterrupted, "interrupted", {}};
   job.print_error(done.error());
   return static_cast<int>(done.error().code);
 }

@@ -1,5 +1,7 @@
 // vkmesh simplify: fewer triangles, by half-edge collapse with quadric error.
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <type_traits>
@@ -122,8 +124,9 @@ void add_simplify(CLI::App& app, Program& program) {
   CLI::Option* ratio =
       command->add_option("--ratio", options->ratio, "Stop at this share of the triangles, from 0 to 1")
           ->type_name("R")
-          ->check(CLI::Range(0.0, 1.0).description(""));
+          ->check(number_between(0, 1));
   command->add_option("--faces", options->faces, "Stop at this number of triangles")
+      ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
       ->type_name("N")
       ->excludes(ratio);
   command
@@ -131,13 +134,13 @@ void add_simplify(CLI::App& app, Program& program) {
                    "Stop before a collapse of a larger error, in units of the file's coordinates: the\n"
                    "root of the mean squared distance to the planes of the faces a point stands for")
       ->type_name("E")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_between(0, std::numeric_limits<double>::max()));
   command
       ->add_option("--max-normal-deviation", options->max_normal_deviation,
                    "Do no collapse that turns a remaining face by more than this, in degrees;\n"
                    "between 0 and 180, default 75")
       ->type_name("DEG")
-      ->check(CLI::Range(0.0, 180.0).description(""));
+      ->check(number_between(0, 180));
   command->callback([&program, options] {
     program.command = "simplify";
     program.action = [options](Job& job) { return run(job, *options); };

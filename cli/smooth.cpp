@@ -56,10 +56,10 @@ void add_smooth(CLI::App& app, Program& program) {
   const auto options = std::make_shared<LaplacianSmoothingOptions>();
   command->add_option("--lambda", options->lambda, "Share of the way in each step, from 0 to 1; default 0.5")
       ->type_name("L")
-      ->check(CLI::Range(0.0, 1.0).description(""));
+      ->check(number_between(0, 1));
   command->add_option("--iterations", options->iterations, "Number of steps, from 0 to 1000000; default 10")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000000).description(""));
+      ->check(count_up_to(1000000));
   command->add_flag_callback(
       "--free-boundary", [options] { options->fix_boundary = false; }, "Move boundary points as well");
   command->callback([&program, options] {

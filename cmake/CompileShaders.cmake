@@ -1,21 +1,27 @@
 # vkmesh_compile_shaders(TARGET SHADER...): compiles each shaders/SHADER.comp with glslangValidator into the header
 # shaders/SHADER.spv.h of the build tree, an array of 32-bit words named k_SHADER_spirv, and lets TARGET include it.
+# A name with an extension, SHADER.vert, is that file; its header is SHADER_vert.spv.h, its array k_SHADER_vert_spirv.
 find_program(VKMESH_GLSLANG glslangValidator REQUIRED)
 
 function(vkmesh_compile_shaders target)
   set(source_dir ${PROJECT_SOURCE_DIR}/shaders)
   set(output_dir ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   set(headers)
-  foreach(shader IN LISTS ARGN)
+  foreach(name IN LISTS ARGN)
+    string(REPLACE "." "_" shader ${name})
+    set(source ${source_dir}/${name})
+    if(shader STREQUAL name)
+      string(APPEND source .comp)
+    endif()
     set(header ${output_dir}/${shader}.spv.h)
     add_custom_command(
       OUTPUT ${header}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${output_dir}
       COMMAND ${VKMESH_GLSLANG} --quiet --target-env vulkan1.2 -I${source_dir} -I${PROJECT_SOURCE_DIR}/host/include
-              --depfile ${header}.d --vn k_${shader}_spirv -o ${header} ${source_dir}/${shader}.comp
-      DEPENDS ${source_dir}/${shader}.comp
+              --depfile ${header}.d --vn k_${shader}_spirv -o ${header} ${source}
+      DEPENDS ${source}
       DEPFILE ${header}.d
-      COMMENT "Compiling shader ${shader}.comp"
+      COMMENT "Compiling shader ${name}"
       VERBATIM)
     list(APPEND headers ${header})
   endforeach()

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "catching.h"
+#include "render/pipelines.h"
 #include "spirv.h"
 
 namespace vkmesh::detail {
@@ -130,6 +131,7 @@ Device::~Device() {
     functions.vkDestroyPipeline(handle, cached.kernel->pipeline_, nullptr);
     functions.vkDestroyPipelineLayout(handle, cached.kernel->layout_, nullptr);
   }
+  draw_pipelines_.reset();
   if (adopted || handle == VK_NULL_HANDLE) return;
   const auto destroy = reinterpret_cast<PFN_vkDestroyDevice>(
       instance_functions.vkGetDeviceProcAddr(handle, "vkDestroyDevice"));
@@ -152,6 +154,9 @@ Result<void> Device::initialise(const PhysicalDevice& physical) {
   max_allocation = limits.maxMemoryAllocationSize;
   max_groups = properties.properties.limits.maxComputeWorkGroupCount[0];
   max_push_constants = properties.properties.limits.maxPushConstantsSize;
+  max_image_side = std::min({properties.properties.limits.maxImageDimension2D,
+                             properties.properties.limits.maxFramebufferWidth,
+                             properties.properties.limits.maxFramebufferHeight});
   timestamp_nanoseconds = static_cast<double>(properties.properties.limits.timestampPeriod);
   // Where rounding modes of all widths hang together, asking for one of them alone is not allowed.
   rounds_to_nearest_even = floats.shaderRoundingModeRTEFloat32 == VK_TRUE &&
@@ -165,7 +170,16 @@ Result<void> Device::initialise(const PhysicalDevice& physical) {
   if (queue_family >= count || (families[queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0)
     return fail(ErrorCode::kUsage, "queue family " + std::to_string(queue_family) + " does not compute");
   timestamp_bits = families[queue_family].timestampValidBits;
+  draws = (families[queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
   return {};
+}
+
+Result<DrawPipelines*> Device::draw_pipelines() {
+  const std::lock_guard lock(draw_pipelines_mutex_);
+  if (!draw_pipelines_) {
+    VKMESH_TRY(draw_pipelines_, DrawPipelines::create(*this));
+  }
+  return draw_pipelines_.get();
 }
 
 Result<void> Device::submit(const VkSubmitInfo& submit_info, VkFence fence) {

@@ -17,6 +17,8 @@
 
 namespace vkmesh::detail {
 
+class DrawPipelines;
+
 /// Where validation messages go; the messenger may call from any thread.
 class MessageLog {
  public:
@@ -76,6 +78,8 @@ class Device {
   [[nodiscard]] Result<void> initialise(const PhysicalDevice& physical);
 
   [[nodiscard]] Result<const Kernel*> kernel(const KernelSource& source);
+  /// What drawing needs, made at the first call. Errors: kNoDevice where the device or its queue cannot draw.
+  [[nodiscard]] Result<DrawPipelines*> draw_pipelines();
   [[nodiscard]] Result<void> submit(const VkSubmitInfo& submit, VkFence fence);
   void set_name(VkObjectType type, std::uint64_t object, const std::string& name) const;
 
@@ -98,6 +102,8 @@ class Device {
   std::uint32_t max_push_constants = 0;
   bool rounds_to_nearest_even = false;  ///< Shaders can ask for it.
   bool keeps_signed_zeros = false;      ///< Likewise.
+  bool draws = false;                   ///< The queue takes graphics commands.
+  std::uint32_t max_image_side = 0;     ///< Pixels.
   std::uint32_t timestamp_bits = 0;     ///< 0: none.
   double timestamp_nanoseconds = 0.0;
 
@@ -115,6 +121,8 @@ class Device {
     std::unique_ptr<Kernel> kernel;
   };
   std::map<std::string, CachedKernel> kernels_;
+  std::mutex draw_pipelines_mutex_;
+  std::unique_ptr<DrawPipelines> draw_pipelines_;
 };
 
 /// Runs the arithmetic of the shaders on chosen values. Errors: kNoDevice, naming the function whose result

@@ -109,9 +109,14 @@ PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle
   functions.vkGetPhysicalDeviceQueueFamilyProperties(handle, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   functions.vkGetPhysicalDeviceQueueFamilyProperties(handle, &count, families.data());
-  const auto family = std::find_if(families.begin(), families.end(), [](const VkQueueFamilyProperties& f) {
-    return (f.queueFlags & VK_QUEUE_COMPUTE_BIT) != 0 && f.queueCount > 0;
-  });
+  const auto family_with = [&](VkQueueFlags flags) {
+    return std::find_if(families.begin(), families.end(), [flags](const VkQueueFamilyProperties& f) {
+      return (f.queueFlags & flags) == flags && f.queueCount > 0;
+    });
+  };
+  // One that draws as well, where there is one; Vulkan promises it for devices that draw at all.
+  auto family = family_with(VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT);
+  if (family == families.end()) family = family_with(VK_QUEUE_COMPUTE_BIT);
   if (family == families.end()) {
     device.info.rejected = "has no queue that computes";
     return device;

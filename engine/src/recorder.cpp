@@ -17,6 +17,11 @@ constexpr VkPipelineStageFlags kStages =
     VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
 constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kReads = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+// Where drawing reads buffers.
+constexpr VkPipelineStageFlags kDrawStages = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT |
+                                             VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+                                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+constexpr VkAccessFlags kDrawReads = VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT;
 
 bool holds(const std::vector<VkBuffer>& buffers, const Buffer* buffer) {
   return std::find(buffers.begin(), buffers.end(), buffer->vk_buffer()) != buffers.end();
@@ -30,6 +35,7 @@ struct Recorder::State {
   Context* context = nullptr;
   VkCommandBuffer commands = VK_NULL_HANDLE;
   bool borrowed = false;
+  bool drew = false;  // Only then may barriers name the stages of drawing, which not every queue has.
   Phase phase = Phase::kRecording;
 
   VkCommandPool pool = VK_NULL_HANDLE;
@@ -77,7 +83,7 @@ Result<void> Recorder::State::require_recording() const {
 
 void Recorder::State::memory_barrier(VkPipelineStageFlags stages, VkAccessFlags access) {
   const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWrites, access};
-  device().functions.vkCmdPipelineBarrier(commands, kStages, stages, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+  device().functions.vkCmdPipelineBarrier(commands, drew ? kStages | kDrawStages : kStages, stages, 0, 1, &barrier, 0, nullptr, 0, nullptr);
   read.clear();
   written.clear();
 }
@@ -88,7 +94,7 @@ void Recorder::State::order(std::span<const Buffer* const> reads, std::span<cons
       std::any_of(writes.begin(), writes.end(),
                   [&](const Buffer* b) { return holds(written, b) || holds(read, b); });
   if (hazard) {
-    memory_barrier(kStages, kReads | kWrites);
+    memory_barrier(drew ? kStages | kDrawStages : kStages, kReads | kWrites | (drew ? kDrawReads : 0u));
     ++counts.barriers;
   }
   for (const Buffer* b : reads)
@@ -235,6 +241,34 @@ Result<void> Recorder::copy(const Buffer& from, const Buffer& to, std::uint64_t 
     state_->device().functions.vkCmdCopyBuffer(state_->commands, from.vk_buffer(), to.vk_buffer(), 1,
                                                &region);
     ++state_->counts.copies;
+    return {};
+  });
+}
+
+Result<void> Recorder::update(const Buffer& to, std::span<const std::byte> data) {
+  return detail::catching([&]() -> Result<void> {
+    VKMESH_CHECK(state_->require_recording());
+    if (data.size() % 4 != 0 || data.size() > 65536 || data.size() > to.size())
+      return fail(ErrorCode::kUsage, "an update of " + std::to_string(data.size()) + " bytes");
+    if (data.empty()) return {};
+    const Buffer* writes[] = {&to};
+    state_->order({}, writes);
+    state_->device().functions.vkCmdUpdateBuffer(state_->commands, to.vk_buffer(), 0, data.size(),
+                                                 data.data());
+    ++state_->counts.copies;
+    return {};
+  });
+}
+
+Result<void> Recorder::graphics(const std::function<void(VkCommandBuffer)>& commands,
+                                std::span<const Buffer* const> reads, std::span<const Buffer* const> writes) {
+  return detail::catching([&]() -> Result<void> {
+    VKMESH_CHECK(state_->require_recording());
+    if (!state_->device().draws)
+      return fail(ErrorCode::kNoDevice, "the queue of " + state_->device().info.name + " does not draw");
+    state_->drew = true;
+    state_->order(reads, writes);
+    commands(state_->commands);
     return {};
   });
 }

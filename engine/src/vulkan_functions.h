@@ -21,6 +21,7 @@ namespace vkmesh::detail {
   X(vkEnumeratePhysicalDevices)          \
   X(vkGetDeviceProcAddr)                 \
   X(vkGetPhysicalDeviceFeatures2)        \
+  X(vkGetPhysicalDeviceFormatProperties) \
   X(vkGetPhysicalDeviceMemoryProperties) \
   X(vkGetPhysicalDeviceProperties)       \
   X(vkGetPhysicalDeviceProperties2)      \
@@ -31,27 +32,47 @@ namespace vkmesh::detail {
   X(vkAllocateMemory)               \
   X(vkBeginCommandBuffer)           \
   X(vkBindBufferMemory)             \
+  X(vkBindImageMemory)              \
+  X(vkCmdBeginRenderPass)           \
+  X(vkCmdBindIndexBuffer)           \
   X(vkCmdBindPipeline)              \
+  X(vkCmdBindVertexBuffers)         \
   X(vkCmdCopyBuffer)                \
+  X(vkCmdCopyImageToBuffer)         \
   X(vkCmdDispatch)                  \
+  X(vkCmdDraw)                      \
+  X(vkCmdDrawIndexed)               \
+  X(vkCmdEndRenderPass)             \
   X(vkCmdPipelineBarrier)           \
   X(vkCmdPushConstants)             \
   X(vkCmdResetQueryPool)            \
+  X(vkCmdSetScissor)                \
+  X(vkCmdSetViewport)               \
+  X(vkCmdUpdateBuffer)              \
   X(vkCmdWriteTimestamp)            \
   X(vkCreateBuffer)                 \
   X(vkCreateCommandPool)            \
   X(vkCreateComputePipelines)       \
   X(vkCreateFence)                  \
+  X(vkCreateFramebuffer)            \
+  X(vkCreateGraphicsPipelines)      \
+  X(vkCreateImage)                  \
+  X(vkCreateImageView)              \
   X(vkCreatePipelineLayout)         \
   X(vkCreateQueryPool)              \
+  X(vkCreateRenderPass)             \
   X(vkCreateShaderModule)           \
   X(vkDestroyBuffer)                \
   X(vkDestroyCommandPool)           \
   X(vkDestroyDevice)                \
   X(vkDestroyFence)                 \
+  X(vkDestroyFramebuffer)           \
+  X(vkDestroyImage)                 \
+  X(vkDestroyImageView)             \
   X(vkDestroyPipeline)              \
   X(vkDestroyPipelineLayout)        \
   X(vkDestroyQueryPool)             \
+  X(vkDestroyRenderPass)            \
   X(vkDestroyShaderModule)          \
   X(vkEndCommandBuffer)             \
   X(vkFlushMappedMemoryRanges)      \
@@ -59,6 +80,7 @@ namespace vkmesh::detail {
   X(vkGetBufferDeviceAddress)       \
   X(vkGetBufferMemoryRequirements)  \
   X(vkGetDeviceQueue)               \
+  X(vkGetImageMemoryRequirements)   \
   X(vkGetQueryPoolResults)          \
   X(vkInvalidateMappedMemoryRanges) \
   X(vkMapMemory)                    \

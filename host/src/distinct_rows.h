@@ -9,8 +9,9 @@
 
 namespace vkmesh::detail {
 
-/// Gives equal rows of N floats one number each, in order of first appearance. Equal means equal bits, but for 0 and
-/// -0, which are one. An open-addressed table of numbers only: the rows themselves stay with the caller.
+/// Gives equal rows of N floats one number each, in order of first appearance. Equal means equal bits, but
+/// for 0 and -0, which are one. An open-addressed table of numbers only: the rows themselves stay with the
+/// caller.
 template <std::size_t N>
 class DistinctRows {
  public:

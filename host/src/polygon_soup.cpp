@@ -13,8 +13,8 @@ namespace vkmesh {
 Result<IndexedFaceSet> weld(const PolygonSoup& soup) {
   return detail::catching([&]() -> Result<IndexedFaceSet> {
     if (soup.corners.size() >= kInvalid)
-      return fail(ErrorCode::kUnsuitable, std::to_string(soup.corners.size()) +
-                                              " corners are more than 32-bit indices can number");
+      return fail(ErrorCode::kUnsuitable,
+                  std::to_string(soup.corners.size()) + " corners are more than 32-bit indices can number");
     IndexedFaceSet mesh;
     mesh.corners.resize(soup.corners.size());
     detail::DistinctRows<3> distinct;

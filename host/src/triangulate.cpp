@@ -21,7 +21,9 @@ struct Point2 {
   double x, y;
 };
 
-bool operator==(const Point2& a, const Point2& b) { return a.x == b.x && a.y == b.y; }
+bool operator==(const Point2& a, const Point2& b) {
+  return a.x == b.x && a.y == b.y;
+}
 
 /// Twice the signed area of a triangle: positive when a, b, c run counter-clockwise.
 double area2(const Point2& a, const Point2& b, const Point2& c) {
@@ -67,8 +69,8 @@ class EarClipper {
   }
 
  private:
-  /// Drops the axis along which Newell's normal is longest: an affine image of the projection on the polygon's plane,
-  /// so ears are the same, and exact where the polygon lies in a coordinate plane.
+  /// Drops the axis along which Newell's normal is longest: an affine image of the projection on the
+  /// polygon's plane, so ears are the same, and exact where the polygon lies in a coordinate plane.
   void project(std::span<const Vec3> points, std::span<const std::uint32_t> corners) {
     DVec3 normal(0.0);
     const DVec3 origin(points[corners[0]]);
@@ -92,8 +94,8 @@ class EarClipper {
 
   double area(std::uint32_t i) const { return area2(flat_[previous_[i]], flat_[i], flat_[next_[i]]); }
 
-  /// What a corner must be to be cut, the best first. A simple polygon always has a proper ear, and what is cut then
-  /// has area; the others serve polygons that touch or cross themselves.
+  /// What a corner must be to be cut, the best first. A simple polygon always has a proper ear, and what is
+  /// cut then has area; the others serve polygons that touch or cross themselves.
   enum class Ear { kProper, kFlat, kTouched };
 
   /// The first ear at or after `start`, or kInvalid.

@@ -13,7 +13,7 @@ TEST_CASE("Every format comes back with the same points and faces") {
   const Scratch scratch;
   const std::string in = scratch.file("in.off", kCubeOff);
   const IndexedFaceSet cube = mesh_in(in);
-  for (const std::string& name : {"a.ply", "a.obj", "a.off", "a.ply.gz", "a.obj.gz", "a.off.gz"}) {
+  for (const std::string name : {"a.ply", "a.obj", "a.off", "a.ply.gz", "a.obj.gz", "a.off.gz"}) {
     CAPTURE(name);
     const Outcome outcome = vkmesh_run({"convert", in, scratch.path(name)});
     CAPTURE(outcome.err);

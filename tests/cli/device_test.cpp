@@ -15,7 +15,7 @@ const std::string kDragon = std::string(VKMESH_DATA_DIR) + "/dragon/dragon_vrip.
 
 TEST_CASE("A device that is not there is refused with exit code 5, before the input is read") {
   const Scratch scratch;
-  for (const std::string& name : {"no such device", "4000000000"}) {
+  for (const std::string name : {"no such device", "4000000000"}) {
     const Outcome outcome =
         vkmesh_run({"normals", scratch.path("none.ply"), scratch.path("out.ply"), "--device", name});
     CAPTURE(outcome.err);

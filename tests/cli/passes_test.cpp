@@ -35,7 +35,7 @@ TEST_CASE("normals of a sphere point outwards, and are named nx ny nz") {
 TEST_CASE("Polygons stay polygons") {
   const Scratch scratch;
   const std::string in = scratch.file("in.off", kCubeOff);
-  for (const std::string& command : {"normals", "curvature", "smooth"}) {
+  for (const std::string command : {"normals", "curvature", "smooth"}) {
     CAPTURE(command);
     REQUIRE(vkmesh_run({command, in, scratch.path("out.ply"), "--device", "cpu"}).code == 0);
     const IndexedFaceSet mesh = mesh_in(scratch.path("out.ply"));
@@ -128,9 +128,9 @@ TEST_CASE("simplify says in words why it stopped") {
   const Outcome bound = vkmesh_run({"simplify", sphere, out, "--error", "1e-9"});
   CHECK(bound.code == 0);
   CHECK_THAT(bound.out, Contains("would exceed the error of 1e-09"));
-  const auto object = vkmesh_run({"simplify", sphere, out, "--error", "0.001", "--json"}).json();
+  const auto object = vkmesh_run({"simplify", sphere, out, "--error", "0.01", "--json"}).json();
   CHECK(object.at("result").at("stop") == "error bound");
-  CHECK(object.at("result").at("error") <= 0.001);
+  CHECK(object.at("result").at("error") <= 0.01);
   CHECK(object.at("output").at("faces") < 1280);
   // Any collapse would lay the last two faces of a tetrahedron on one another.
   const Outcome stuck =
@@ -156,7 +156,7 @@ TEST_CASE("simplify keeps point attributes with their points, and names what it 
 
   const std::string obj = scratch.file("in.obj",
                                        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-                                       "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+                                       "f 1/1 2/2 3/3\nf 1/4 3/2 4/1\n");
   const Outcome dropped = vkmesh_run({"simplify", obj, out, "--ratio", "1", "--json"});
   REQUIRE(dropped.code == 0);
   CHECK_THAT(dropped.json().at("notes").dump(), Contains("uv"));

@@ -11,7 +11,6 @@ namespace {
 // Vulkan hands its entry points no user data, so the fake in force is found here.
 FakeLoader* current = nullptr;
 VkInstance last_instance = VK_NULL_HANDLE;
-VkDevice last_device = VK_NULL_HANDLE;
 
 }  // namespace
 
@@ -27,7 +26,6 @@ FakeLoader::FakeLoader() {
 FakeLoader::~FakeLoader() {
   current = nullptr;
   last_instance = VK_NULL_HANDLE;
-  last_device = VK_NULL_HANDLE;
 }
 
 ContextOptions FakeLoader::options() const {
@@ -46,18 +44,12 @@ PFN_vkVoidFunction FakeLoader::entry(VkInstance instance, const char* name) {
 }
 
 PFN_vkVoidFunction FakeLoader::device_entry(VkDevice device, const char* name) {
-  last_device = device;
   const auto found = current->replaced_.find(name);
   if (found != current->replaced_.end()) return found->second;
-  return find_real(name);
+  return reinterpret_cast<PFN_vkGetDeviceProcAddr>(find_real("vkGetDeviceProcAddr"))(device, name);
 }
 
 PFN_vkVoidFunction FakeLoader::find_real(const char* name) {
-  if (last_device != VK_NULL_HANDLE) {
-    const auto device_functions =
-        reinterpret_cast<PFN_vkGetDeviceProcAddr>(system_loader()(last_instance, "vkGetDeviceProcAddr"));
-    if (const auto function = device_functions(last_device, name)) return function;
-  }
   return system_loader()(last_instance, name);
 }
 

@@ -26,7 +26,7 @@ class FakeLoader {
 
   /// device_options() with this loader.
   [[nodiscard]] ContextOptions options() const;
-  /// The function as the system's loader has it, for the instance and device made last.
+  /// The function as the system's loader has it, for the instance made last and its devices.
   template <class Function>
   [[nodiscard]] static Function real(const char* name) {
     return reinterpret_cast<Function>(find_real(name));

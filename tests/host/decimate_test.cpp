@@ -2,7 +2,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <map>
+#include <numeric>
+#include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -143,7 +148,185 @@ IndexedFaceSet manifold_part(const IndexedFaceSet& mesh) {
   return part;
 }
 
+/// The same decimation, by looking at everything before every collapse: triangles in a list, planes in a list
+/// for each vertex, no heap, no half-edges. Returns the vertices in the order in which they go.
+class SlowDecimation {
+ public:
+  SlowDecimation(const IndexedFaceSet& mesh, const DecimateOptions& options)
+      : points_(mesh.points), options_(options), planes_(mesh.points.size()) {
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      faces_.push_back({mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]});
+    for (const Face& face : faces_) {
+      const DVec3 normal = cross(at(face[1]) - at(face[0]), at(face[2]) - at(face[0]));
+      const double area2 = std::sqrt(dot(normal, normal));
+      for (const std::uint32_t v : face) planes_[v].push_back({normal / area2, at(face[0]), area2 / 2});
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t a = face[i], b = face[(i + 1) % 3];
+        if (around_edge(a, b) != 1) continue;
+        const DVec3 edge = at(b) - at(a), across = cross(edge, normal);
+        for (const std::uint32_t v : {a, b})
+          planes_[v].push_back(
+              {across / std::sqrt(dot(across, across)), at(a), options.boundary_weight * dot(edge, edge)});
+      }
+    }
+  }
+
+  std::vector<std::uint32_t> run() {
+    std::vector<std::uint32_t> removed;
+    while (faces_.size() > options_.target_faces.value_or(0)) {
+      double least = std::numeric_limits<double>::infinity();
+      std::uint32_t from = kInvalid, to = kInvalid;
+      for (std::uint32_t p = 0; p < points_.size(); ++p)
+        for (const std::uint32_t q : neighbours(p)) {
+          const double cost = sum(p, at(q)) - sum(p, at(p));
+          if (cost < least && legal(p, q)) {
+            least = cost;
+            from = p;
+            to = q;
+          }
+        }
+      if (from == kInvalid) break;
+      planes_[to].insert(planes_[to].end(), planes_[from].begin(), planes_[from].end());
+      for (Face& face : faces_) std::replace(face.begin(), face.end(), from, to);
+      std::erase_if(faces_, [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+      removed.push_back(from);
+    }
+    return removed;
+  }
+
+ private:
+  using Face = std::array<std::uint32_t, 3>;
+  struct Plane {
+    DVec3 normal, point;
+    double weight;
+  };
+
+  static DVec3 cross(const DVec3& a, const DVec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  [[nodiscard]] DVec3 at(std::uint32_t v) const { return DVec3(points_[v]); }
+  [[nodiscard]] double sum(std::uint32_t v, const DVec3& x) const {
+    double total = 0;
+    for (const Plane& plane : planes_[v]) {
+      const double distance = dot(plane.normal, x - plane.point);
+      total += plane.weight * distance * distance;
+    }
+    return total;
+  }
+  static bool has(const Face& face, std::uint32_t v) {
+    return std::find(face.begin(), face.end(), v) != face.end();
+  }
+  [[nodiscard]] std::size_t around_edge(std::uint32_t a, std::uint32_t b) const {
+    return static_cast<std::size_t>(
+        std::count_if(faces_.begin(), faces_.end(), [&](const Face& f) { return has(f, a) && has(f, b); }));
+  }
+  [[nodiscard]] std::set<std::uint32_t> neighbours(std::uint32_t v) const {
+    std::set<std::uint32_t> found;
+    for (const Face& face : faces_)
+      if (has(face, v)) found.insert(face.begin(), face.end());
+    found.erase(v);
+    return found;
+  }
+  [[nodiscard]] bool on_boundary(std::uint32_t v) const {
+    const auto around = neighbours(v);
+    return std::any_of(around.begin(), around.end(), [&](std::uint32_t n) { return around_edge(v, n) == 1; });
+  }
+  [[nodiscard]] bool legal(std::uint32_t p, std::uint32_t q) const {
+    // An inner edge must not join two boundary vertices, and common neighbours are those of the edge's faces
+    // alone.
+    const std::size_t edge_faces = around_edge(p, q);
+    if (edge_faces == 2 && on_boundary(p) && on_boundary(q)) return false;
+    const auto of_p = neighbours(p), of_q = neighbours(q);
+    const auto common =
+        std::count_if(of_p.begin(), of_p.end(), [&](std::uint32_t v) { return of_q.contains(v); });
+    if (static_cast<std::size_t>(common) != edge_faces) return false;
+    double weight = 0;
+    for (const auto& planes : {planes_[p], planes_[q]})
+      for (const Plane& plane : planes) weight += plane.weight;
+    if (options_.max_error && std::sqrt((sum(p, at(q)) + sum(q, at(q))) / weight) > *options_.max_error)
+      return false;
+    // What is left of the component must be more than nothing, and no two faces may fall on one another.
+    std::set<Face> after;
+    for (const Face& face : faces_) {
+      if (!has(face, p) && !has(face, q)) continue;
+      if (has(face, p) && has(face, q)) continue;
+      Face moved = face;
+      std::replace(moved.begin(), moved.end(), p, q);
+      std::sort(moved.begin(), moved.end());
+      if (!after.insert(moved).second) return false;
+    }
+    if (after.empty()) return false;
+    for (const Face& face : faces_) {
+      if (!has(face, p) || has(face, q)) continue;
+      Face moved = face;
+      std::replace(moved.begin(), moved.end(), p, q);
+      const DVec3 before = cross(at(face[1]) - at(face[0]), at(face[2]) - at(face[0]));
+      const DVec3 now = cross(at(moved[1]) - at(moved[0]), at(moved[2]) - at(moved[0]));
+      const double cosine = dot(before, now) / std::sqrt(dot(before, before) * dot(now, now));
+      if (!(std::acos(std::clamp(cosine, -1.0, 1.0)) <= options_.max_normal_deviation)) return false;
+    }
+    return true;
+  }
+
+  std::vector<Vec3> points_;
+  DecimateOptions options_;
+  std::vector<std::vector<Plane>> planes_;
+  std::vector<Face> faces_;
+};
+
 }  // namespace
+
+TEST_CASE("decimation: the order of collapses is that of a search over all of them", "[decimate]") {
+  const std::vector<IndexedFaceSet> shapes = {test::icosphere(1), test::torus(8, 5), test::grid(6, 5),
+                                              test::cylinder(3, 6)};
+  for (const IndexedFaceSet& shape : shapes)
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      IndexedFaceSet mesh = shape;
+      test::jitter(mesh, 0.12f, seed);  // no two costs alike
+      const HalfEdgeMesh input = half_edges(mesh);
+      DecimateOptions options = to_faces(0);
+      options.max_normal_deviation = seed % 2 == 0 ? 1.3 : 0.5;
+      options.boundary_weight = seed % 3 == 0 ? 0.5 : 3;
+      std::vector<std::uint32_t> expected = SlowDecimation(mesh, options).run();
+      REQUIRE(expected.size() > 3);
+      for (std::size_t target = mesh.face_count(); target > 0; target -= std::min<std::size_t>(target, 7)) {
+        options.target_faces = target;
+        const Decimated result = run(input, mesh.points, options);
+        REQUIRE(result.collapses <= expected.size());
+        std::vector<std::uint32_t> gone(expected.begin(),
+                                        expected.begin() + static_cast<std::ptrdiff_t>(result.collapses));
+        std::sort(gone.begin(), gone.end());
+        std::vector<std::uint32_t> all(mesh.points.size());
+        std::iota(all.begin(), all.end(), 0u);
+        std::vector<std::uint32_t> left;
+        std::set_difference(all.begin(), all.end(), gone.begin(), gone.end(), std::back_inserter(left));
+        REQUIRE(result.source_vertex == left);
+      }
+      options.target_faces = 0;
+      CHECK(run(input, mesh.points, options).collapses == expected.size());
+    }
+}
+
+TEST_CASE("decimation: within an error bound every collapse is done that a search over all of them finds",
+          "[decimate]") {
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    IndexedFaceSet mesh = seed % 2 == 0 ? test::torus(9, 6) : test::grid(8, 7);
+    test::jitter(mesh, 0.1f, seed);
+    // Every other sheet nearly flat but for a few bumps: what falls short first may pass when flat land has
+    // joined.
+    if (seed % 4 == 1)
+      for (std::size_t i = 0; i < mesh.points.size(); ++i) mesh.points[i].z *= i % 11 == 3 ? 4.0f : 0.02f;
+    DecimateOptions options;
+    options.max_error = 0.02 * (1 + seed % 12);
+    std::vector<std::uint32_t> gone = SlowDecimation(mesh, options).run();
+    std::sort(gone.begin(), gone.end());
+    const Decimated result = run(mesh, options);
+    CHECK(result.stop == DecimateStop::kErrorBound);
+    for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
+      CHECK(std::binary_search(gone.begin(), gone.end(), v) !=
+            std::binary_search(result.source_vertex.begin(), result.source_vertex.end(), v));
+  }
+}
 
 TEST_CASE("decimation: every single collapse keeps the topology and the structure", "[decimate]") {
   for (const auto& [name, shape] : small_shapes())
@@ -156,6 +339,7 @@ TEST_CASE("decimation: every single collapse keeps the topology and the structur
       options.boundary_weight = seed % 2 == 0 ? 100.0 : 0.0;
       options.max_normal_deviation = seed < 2 ? 1.3 : 3.1;
       std::size_t collapses = 0;
+      double error = 0;
       for (std::size_t target = mesh.face_count() + 1; target-- > 0;) {
         INFO(name << ", seed " << seed << ", target " << target);
         options.target_faces = target;
@@ -165,6 +349,8 @@ TEST_CASE("decimation: every single collapse keeps the topology and the structur
         CHECK(result.collapses >= collapses);
         CHECK(result.collapses <= collapses + 1);
         collapses = result.collapses;
+        CHECK(result.error >= error);
+        error = result.error;
         if (result.stop == DecimateStop::kTargetReached) {
           CHECK(result.mesh.face_count() <= target);
           CHECK(result.mesh.face_count() + 1 >= target);
@@ -257,9 +443,9 @@ TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decima
 }
 
 TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage", "[decimate]") {
-  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint32_t seed = 0; seed <= 5; ++seed) {
     IndexedFaceSet mesh = test::grid(15, 15);
-    test::jitter(mesh, 0.24f, seed);
+    if (seed > 0) test::jitter(mesh, 0.24f, seed);  // else many points lie on lines
     for (Vec3& p : mesh.points) p.z = 0;
     const HalfEdgeMesh input = half_edges(mesh);
     for (const double weight : {100.0, 0.0})
@@ -421,6 +607,34 @@ TEST_CASE("decimation: faces without area, and points that coincide, do no harm"
   const Decimated result = run(input, mesh.points, options);
   CHECK(result.mesh.face_count() == 2);
   CHECK(result.error == 0);
+
+  // Points of a flat sheet put on a line with two neighbours: whatever becomes of the faces without area,
+  // none turns over.
+  const auto turned = [](const HalfEdgeMesh& m, std::span<const Vec3> points) {
+    std::size_t count = 0;
+    for (std::uint32_t f = 0; f < m.face_count(); ++f) count += normal_of(m, points, f).z < 0 ? 1 : 0;
+    return count;
+  };
+  std::mt19937 random(4);
+  std::size_t tried = 0;
+  for (int attempt = 0; attempt < 3000; ++attempt) {
+    IndexedFaceSet sheet = test::grid(5, 5);
+    for (int i = 0; i < 6; ++i) {
+      const std::size_t f = random() % sheet.face_count(), k = random() % 3;
+      const std::uint32_t moved = sheet.face(f)[k];
+      const Vec3 c = sheet.points[sheet.face(f)[(k + 1) % 3]], d = sheet.points[sheet.face(f)[(k + 2) % 3]];
+      const float t = static_cast<float>(random() % 5) * 0.5f - 0.5f;
+      sheet.points[moved] = {c.x + t * (d.x - c.x), c.y + t * (d.y - c.y), 0};
+    }
+    const HalfEdgeMesh connectivity = half_edges(sheet);
+    if (turned(connectivity, sheet.points) > 0) continue;
+    ++tried;
+    for (const std::size_t target : {40u, 25u, 10u, 0u}) {
+      const Decimated less = run(connectivity, sheet.points, to_faces(target));
+      CHECK(turned(less.mesh, less.positions) == 0);
+    }
+  }
+  CHECK(tried > 30);
 
   // All points in one place, and all on one line.
   for (const float step : {0.0f, 1.0f}) {

@@ -66,7 +66,8 @@ TEST_CASE("OBJ takes every form of index", "[io][obj]") {
         std::vector<float>{0, 0, 1, 0, 1, 0, 0, 0, 1});
   const IndexedFaceSet uv = parse(kHead + attributes + "f 1/1 2/1/ 3/-3\n", "a.obj");
   REQUIRE(uv.corner_channels.size() == 1);
-  CHECK(std::get<std::vector<float>>(uv.corner_channels[0].values) == std::vector<float>{0.5f, 1, 0.5f, 1, 0.5f, 1});
+  CHECK(std::get<std::vector<float>>(uv.corner_channels[0].values) ==
+        std::vector<float>{0.5f, 1, 0.5f, 1, 0.5f, 1});
   const IndexedFaceSet normal = parse(kHead + attributes + "f 1//1 2//2 3//2\n", "a.obj");
   REQUIRE(normal.corner_channels.size() == 1);
   CHECK(normal.corner_channels[0].name == "normal");
@@ -84,12 +85,12 @@ TEST_CASE("OBJ content that is not kept is named", "[io][obj]") {
       std::string("mtllib a b.mtl\no thing\ng one two\nusemtl red\ns off\n") + kHead +
           "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1 3 4\nl 1 2\nl 2 3\np 1\ncurv 0 1 \\\n1 2\nv 1 2 3 0.5\n",
       "a.obj");
-  CHECK(file.notes == std::vector<std::string>{
-                          "1 'vt' lines ignored: not every corner of a face names one",
-                          "1 'vn' lines ignored: not every corner of a face names one", "1 vertex weights ignored",
-                          "1 'curv' lines ignored", "1 'g' lines ignored", "2 'l' lines ignored",
-                          "1 'mtllib' lines ignored", "1 'o' lines ignored", "1 'p' lines ignored",
-                          "1 's' lines ignored", "1 'usemtl' lines ignored"});
+  CHECK(file.notes ==
+        std::vector<std::string>{"1 'vt' lines ignored: not every corner of a face names one",
+                                 "1 'vn' lines ignored: not every corner of a face names one",
+                                 "1 vertex weights ignored", "1 'curv' lines ignored", "1 'g' lines ignored",
+                                 "2 'l' lines ignored", "1 'mtllib' lines ignored", "1 'o' lines ignored",
+                                 "1 'p' lines ignored", "1 's' lines ignored", "1 'usemtl' lines ignored"});
   const IndexedFaceSet& mesh = std::get<IndexedFaceSet>(file.geometry);
   CHECK(mesh.face_count() == 2);
   CHECK(mesh.points.size() == 5);

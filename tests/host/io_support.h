@@ -1,9 +1,6 @@
 // What the tests of reading and writing share.
 #pragma once
 
-#include <stdlib.h>
-
-#include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,8 +10,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include <catch2/catch.hpp>
+#include <stdlib.h>
 
 #include <vkmesh/io/mesh_io.h>
 
@@ -77,7 +78,8 @@ inline void require_same_channels(const std::vector<Channel>& a, const std::vect
 /// Every array alike, in every bit where it is a position.
 inline void require_same(const IndexedFaceSet& a, const IndexedFaceSet& b) {
   REQUIRE(a.points.size() == b.points.size());
-  CHECK((a.points.empty() || std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0));
+  CHECK((a.points.empty() ||
+         std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0));
   CHECK(a.corners == b.corners);
   CHECK(a.face_offsets == b.face_offsets);
   require_same_channels(a.point_channels, b.point_channels);
@@ -88,7 +90,8 @@ inline void require_same(const IndexedFaceSet& a, const IndexedFaceSet& b) {
 /// A triangle, a quad and a pentagon over seven points, one of them isolated.
 inline IndexedFaceSet mixed_polygons() {
   IndexedFaceSet mesh;
-  mesh.points = {{0, 0, 0}, {1, 0.1f, 0}, {1, 1, -1e-20f}, {-0.0f, 1, 3e20f}, {2, 2, 1.0f / 3}, {0, 3, 1}, {5, 5, 5}};
+  mesh.points = {{0, 0, 0},        {1, 0.1f, 0}, {1, 1, -1e-20f}, {-0.0f, 1, 3e20f},
+                 {2, 2, 1.0f / 3}, {0, 3, 1},    {5, 5, 5}};
   mesh.corners = {0, 1, 2, 0, 2, 4, 3, 1, 2, 4, 5, 3};
   mesh.face_offsets = {0, 3, 7, 12};
   return mesh;
@@ -97,7 +100,14 @@ inline IndexedFaceSet mixed_polygons() {
 template <class T>
 std::vector<T> ramp(std::size_t count, double scale) {
   std::vector<T> values;
-  for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<T>(static_cast<double>(i) * scale));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = static_cast<double>(i) * scale;
+    // Integers wrap; out of a float's range they would not be defined.
+    if constexpr (std::is_integral_v<T>)
+      values.push_back(static_cast<T>(static_cast<std::int64_t>(value)));
+    else
+      values.push_back(static_cast<T>(value));
+  }
   return values;
 }
 

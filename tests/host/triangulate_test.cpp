@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -6,6 +5,8 @@
 #include <set>
 #include <utility>
 #include <vector>
+
+#include <catch2/catch.hpp>
 
 #include <vkmesh/triangulate.h>
 
@@ -40,7 +41,9 @@ DVec3 area_vector(const IndexedFaceSet& mesh, std::span<const std::uint32_t> cor
   return sum;
 }
 
-double length(const DVec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+double length(const DVec3& v) {
+  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
 
 IndexedFaceSet triangulated(const IndexedFaceSet& mesh) {
   auto result = triangulate(mesh);
@@ -49,8 +52,9 @@ IndexedFaceSet triangulated(const IndexedFaceSet& mesh) {
   return std::move(result->mesh);
 }
 
-/// A triangulation covers its polygon without overlap exactly when its triangles all turn the polygon's way and their
-/// areas sum to the polygon's, and their edges are those of the polygon plus diagonals used once in each direction.
+/// A triangulation covers its polygon without overlap exactly when its triangles all turn the polygon's way
+/// and their areas sum to the polygon's, and their edges are those of the polygon plus diagonals used once in
+/// each direction.
 void require_covers(const IndexedFaceSet& mesh, double smallest_area) {
   const std::size_t n = mesh.corners.size();
   const IndexedFaceSet out = triangulated(mesh);
@@ -117,7 +121,8 @@ TEST_CASE("simple polygons are covered by ears", "[triangulate]") {
 }
 
 TEST_CASE("collinear corners make no triangle without area", "[triangulate]") {
-  // Whole coordinates in z = 0 are exact, so the areas must be positive and not just no smaller than rounding.
+  // Whole coordinates in z = 0 are exact, so the areas must be positive and not just no smaller than
+  // rounding.
   require_covers(face_of({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 3}}, false), 0.5);
   require_covers(face_of({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}, false), 0.5);
   require_covers(face_of({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {2, 1}, {1, 1}, {0, 1}}, false), 0.5);
@@ -131,7 +136,8 @@ TEST_CASE("polygons without ears still give n - 2 triangles", "[triangulate]") {
       {{0, 0}, {2, 0}, {2, 0}, {2, 2}, {2, 2}, {0, 2}},  // Corners repeated.
       {{0, 0}, {4, 0}, {2, 0}, {2, 2}, {2, 0}, {0, 3}}   // A spike.
   };
-  for (const Polygon& polygon : polygons) CHECK(triangulated(face_of(polygon, false)).face_count() == polygon.size() - 2);
+  for (const Polygon& polygon : polygons)
+    CHECK(triangulated(face_of(polygon, false)).face_count() == polygon.size() - 2);
   // Random chains cross themselves everywhere.
   std::mt19937 random(7);
   for (std::size_t n = 4; n < 60; ++n) {
@@ -177,7 +183,8 @@ TEST_CASE("faces keep their order, and channels follow", "[triangulate]") {
   mesh.corners = {1, 4, 2, 0, 1, 2, 3};
   mesh.face_offsets = {0, 3, 7};
   mesh.point_channels = {{"quality", 1, std::vector<float>{1, 2, 3, 4, 5}}};
-  mesh.corner_channels = {{"uv", 2, std::vector<float>{0, .1f, 1, .1f, 2, .1f, 3, .2f, 4, .2f, 5, .2f, 6, .2f}}};
+  mesh.corner_channels = {
+      {"uv", 2, std::vector<float>{0, .1f, 1, .1f, 2, .1f, 3, .2f, 4, .2f, 5, .2f, 6, .2f}}};
   mesh.face_channels = {{"part", 1, std::vector<std::int32_t>{-7, 9}}};
   const auto result = triangulate(mesh);
   REQUIRE(result);
@@ -188,7 +195,8 @@ TEST_CASE("faces keep their order, and channels follow", "[triangulate]") {
   CHECK(out.point_channels[0].values == mesh.point_channels[0].values);
   CHECK(out.face_channels[0].values == ChannelValues(std::vector<std::int32_t>{-7, 9, 9}));
   CHECK(out.corner_channels[0].values ==
-        ChannelValues(std::vector<float>{0, .1f, 1, .1f, 2, .1f, 3, .2f, 4, .2f, 5, .2f, 3, .2f, 5, .2f, 6, .2f}));
+        ChannelValues(
+            std::vector<float>{0, .1f, 1, .1f, 2, .1f, 3, .2f, 4, .2f, 5, .2f, 3, .2f, 5, .2f, 6, .2f}));
 
   const auto same = triangulate(icosphere(1));
   REQUIRE(same);

@@ -1,9 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <tuple>
 #include <vector>
+
+#include <catch2/catch.hpp>
 
 #include <vkmesh/polygon_soup.h>
 
@@ -44,10 +45,12 @@ TEST_CASE("welding a soup of many corners agrees with an ordered map", "[weld]")
   std::map<std::tuple<float, float, float>, std::uint32_t> seen;
   std::vector<std::uint32_t> expected;
   for (const Vec3& p : soup.corners)
-    expected.push_back(seen.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(seen.size())).first->second);
+    expected.push_back(
+        seen.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(seen.size())).first->second);
   CHECK(mesh->corners == expected);
   CHECK(mesh->points.size() == seen.size());
-  for (std::size_t c = 0; c < soup.corners.size(); ++c) REQUIRE(mesh->points[mesh->corners[c]] == soup.corners[c]);
+  for (std::size_t c = 0; c < soup.corners.size(); ++c)
+    REQUIRE(mesh->points[mesh->corners[c]] == soup.corners[c]);
 }
 
 TEST_CASE("an empty soup welds to an empty mesh", "[weld]") {

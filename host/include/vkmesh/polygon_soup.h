@@ -24,7 +24,7 @@ struct PolygonSoup {
 };
 
 /// Identifies corners whose coordinates are equal (0 equals -0) and numbers the points in order of first
-/// appearance. Faces and their channels keep their order. O(n log n) for n corners. Errors: kOutOfMemory;
+/// appearance. Faces and their channels keep their order. O(n) expected for n corners (a hash table). Errors: kOutOfMemory;
 /// kUnsuitable for more than 2^32 - 2 corners.
 [[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
 

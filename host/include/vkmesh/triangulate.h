@@ -18,7 +18,8 @@ struct Triangulated {
 /// Triangles pass unchanged; a face of n corners gives n - 2 triangles in its place. Non-planar polygons are
 /// cut by their projection on that plane; where the projection has no ear left (it crosses itself) the rest
 /// is cut as a fan. Corner and face channels follow. Faces of fewer than three corners pass no triangle on:
-/// run consolidate or survey first. O(n²) per polygon of n corners. Errors: kOutOfMemory.
+/// run consolidate or survey first. O(n²) for a simple polygon of n corners, more for one that crosses
+/// itself. Errors: kOutOfMemory.
 [[nodiscard]] Result<Triangulated> triangulate(const IndexedFaceSet& mesh);
 
 }  // namespace vkmesh

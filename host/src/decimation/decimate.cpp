@@ -201,12 +201,10 @@ class Decimation {
   [[nodiscard]] Legality judge(std::uint32_t h) {
     const std::uint32_t t = mesh_.twin(h);
     const std::uint32_t p = mesh_.origin(h), q = mesh_.origin(t);
-    const std::uint32_t a = mesh_.origin(mesh_.previous(h)), b = mesh_.origin(mesh_.previous(t));
     if (options_.max_error && error_of(p, q) > *options_.max_error) return Legality::kError;
 
-    // Link condition: p and q share the neighbours a and b, which differ, and nothing else; and the faces
-    // beyond a and b do not close the four vertices to a tetrahedron.
-    if (a == b) return Legality::kLink;
+    // Link condition: p and q share two neighbours, those across the edge's faces, and the four are no
+    // tetrahedron.
     ring_.clear();
     spokes_.clear();
     if (++stamp_ == 0) {
@@ -256,7 +254,7 @@ class Decimation {
         if (!has_area(after, to_x - move, to_y - move)) {
           if (had_area) return true;
         } else if (!had_area) {
-          if (dot(normal_at(p), after) < 0) return true;
+          if (!(dot(normal_at(p), after) > 0)) return true;
         } else if (dot(before, after) < cos_deviation_ * std::sqrt(dot(before, before) * dot(after, after))) {
           return true;
         }
@@ -289,7 +287,7 @@ class Decimation {
       const std::uint32_t r = ring_[i];
       if (r == mesh_.apex()) continue;
       Candidate& candidate = candidates_[r];
-      if (candidate.held || candidate.half_edge == kInvalid || candidate.towards == p) {
+      if (candidate.held || candidate.towards == p) {
         settle(r, cheapest(r));
       } else if (candidate.half_edge == b_to_q) {
         candidate.half_edge = b_to_p;  // which took its place

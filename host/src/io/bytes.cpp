@@ -1,9 +1,5 @@
 #include "io/bytes.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -11,13 +7,19 @@
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace vkmesh::detail {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 20;   // Read from a file at once.
 constexpr std::size_t kBuffer = std::size_t{1} << 18;  // Collected before it is written.
 
-std::string reason(int code) { return std::generic_category().message(code); }
+std::string reason(int code) {
+  return std::generic_category().message(code);
+}
 
 /// Closes what it holds.
 class Descriptor {
@@ -78,8 +80,8 @@ class Inflater {
     return {};
   }
 
-  /// After the last piece. Output that did not fit is drained by feed(), which asks for more room while input is left;
-  /// what is left inside zlib then is an unfinished member.
+  /// After the last piece. Output that did not fit is drained by feed(), which asks for more room while input
+  /// is left; what is left inside zlib then is an unfinished member.
   Result<void> finish() const {
     if (!ended_) return broken("the gzip stream is cut short");
     return {};
@@ -102,7 +104,8 @@ class Inflater {
 char* ByteBuffer::room(std::size_t more) {
   if (capacity_ - size_ < more) {
     const std::size_t wanted = std::max(size_ + more, size_ + size_ / 2);
-    // Not new[]: realloc moves pages of a large block instead of copying them, so the peak stays at one block.
+    // Not new[]: realloc moves pages of a large block instead of copying them, so the peak stays at one
+    // block.
     char* grown = static_cast<char*>(std::realloc(data_.get(), wanted));
     if (grown == nullptr) throw std::bad_alloc();
     static_cast<void>(data_.release());
@@ -112,7 +115,9 @@ char* ByteBuffer::room(std::size_t more) {
   return data_.get() + size_;
 }
 
-bool is_gzip(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b"; }
+bool is_gzip(std::string_view bytes) {
+  return bytes.substr(0, 2) == "\x1f\x8b";
+}
 
 Result<ByteBuffer> inflate_bytes(std::string_view compressed, const std::string& name) {
   ByteBuffer out;

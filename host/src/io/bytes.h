@@ -1,7 +1,6 @@
-// Bytes from files and into them: gzip both ways, standard streams, and output that appears whole or not at all.
+// Bytes from files and into them: gzip both ways, standard streams, and output that appears whole or not at
+// all.
 #pragma once
-
-#include <zlib.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +12,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <zlib.h>
 
 #include <vkmesh/progress.h>
 #include <vkmesh/result.h>
@@ -45,15 +46,16 @@ struct Content {
 
 [[nodiscard]] bool is_gzip(std::string_view bytes);
 
-/// The whole content of a file; "-" is standard input. The compressed bytes of a gzipped file are never held at once.
-/// Errors: kUnreadable (with the system's reason, or the byte at which a gzip stream breaks), kInterrupted.
+/// The whole content of a file; "-" is standard input. The compressed bytes of a gzipped file are never held
+/// at once. Errors: kUnreadable (with the system's reason, or the byte at which a gzip stream breaks),
+/// kInterrupted.
 [[nodiscard]] Result<Content> read_content(const std::filesystem::path& path, const Progress& progress);
 
 /// Inflates all members of a gzip stream. Errors: kUnreadable.
 [[nodiscard]] Result<ByteBuffer> inflate_bytes(std::string_view compressed, const std::string& name);
 
-/// Where encoders put their bytes: buffered, through gzip when asked for, then into memory or a file. The first error
-/// sticks, and finish() tells it.
+/// Where encoders put their bytes: buffered, through gzip when asked for, then into memory or a file. The
+/// first error sticks, and finish() tells it.
 class Output {
  public:
   /// Into memory.
@@ -93,8 +95,8 @@ class Output {
   std::optional<Error> error_;
 };
 
-/// A file to write that appears under its name when commit() succeeds, and not at all otherwise. What is no regular
-/// file ("-", a device, a pipe) is written directly.
+/// A file to write that appears under its name when commit() succeeds, and not at all otherwise. What is no
+/// regular file ("-", a device, a pipe) is written directly.
 class OutputFile {
  public:
   [[nodiscard]] static Result<OutputFile> open(const std::filesystem::path& path);

@@ -46,9 +46,11 @@ class FaceCollector {
   /// Ends a face of `count` corners. False when there are more corners than an index can number.
   bool end_face(std::size_t count) {
     if (count != 3 && mesh_.face_offsets.empty())
-      for (std::size_t f = 0; f <= faces_; ++f) mesh_.face_offsets.push_back(static_cast<std::uint32_t>(3 * f));
+      for (std::size_t f = 0; f <= faces_; ++f)
+        mesh_.face_offsets.push_back(static_cast<std::uint32_t>(3 * f));
     ++faces_;
-    if (!mesh_.face_offsets.empty()) mesh_.face_offsets.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
+    if (!mesh_.face_offsets.empty())
+      mesh_.face_offsets.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
     return mesh_.corners.size() <= kMaxElements;
   }
   /// The mesh holds this many triangles already.
@@ -59,8 +61,8 @@ class FaceCollector {
   std::size_t faces_ = 0;
 };
 
-/// Colours as text files give them. Whole numbers up to 255 of which some exceed 1 are 8-bit values; else they are
-/// fractions of 1.
+/// Colours as text files give them. Whole numbers up to 255 of which some exceed 1 are 8-bit values; else
+/// they are fractions of 1.
 [[nodiscard]] Channel color_channel(std::vector<float> values, unsigned components, bool whole_numbers);
 
 [[nodiscard]] Result<MeshFile> parse_ply(const Source& source);
@@ -73,7 +75,8 @@ class FaceCollector {
 
 using Notes = std::vector<std::string>;
 
-/// Encoders get meshes whose indices and channel sizes were checked. Each returns what the format could not hold.
+/// Encoders get meshes whose indices and channel sizes were checked. Each returns what the format could not
+/// hold.
 void encode_ply(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);
 void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);
 void encode_off(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);

@@ -42,7 +42,8 @@ Result<void> Source::tick(const char* at) const {
 }
 
 Channel color_channel(std::vector<float> values, unsigned components, bool whole_numbers) {
-  const bool bytes = whole_numbers && std::any_of(values.begin(), values.end(), [](float v) { return v > 1; });
+  const bool bytes =
+      whole_numbers && std::any_of(values.begin(), values.end(), [](float v) { return v > 1; });
   if (!bytes) return {"color", components, std::move(values)};
   std::vector<std::uint8_t> rounded;
   rounded.reserve(values.size());
@@ -93,8 +94,10 @@ struct KnownFormat {
   const char* name;
 };
 
-constexpr KnownFormat kFormats[] = {
-    {FileFormat::kPly, "ply"}, {FileFormat::kObj, "obj"}, {FileFormat::kOff, "off"}, {FileFormat::kStl, "stl"}};
+constexpr KnownFormat kFormats[] = {{FileFormat::kPly, "ply"},
+                                    {FileFormat::kObj, "obj"},
+                                    {FileFormat::kOff, "off"},
+                                    {FileFormat::kStl, "stl"}};
 
 /// What the name of a file says: its extension in lower case without the dot, and a .gz after it.
 struct NameHint {
@@ -133,7 +136,8 @@ bool is_obj_keyword(std::string_view word) {
 Result<MeshFile> parse_content(const Source& source) {
   const std::string_view bytes = source.bytes;
   if (bytes.empty()) return fail(ErrorCode::kUnreadable, "the file is empty", {source.name, {}, {}});
-  // The magic number of PLY is its first line; a binary STL file of the right size is one whatever its header says.
+  // The magic number of PLY is its first line; a binary STL file of the right size is one whatever its header
+  // says.
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply "))
     return parse_ply(source);
   if (stl_binary_size(bytes) == bytes.size()) return parse_stl_binary(source);
@@ -148,8 +152,8 @@ Result<MeshFile> parse_content(const Source& source) {
   const auto named = format_named(hint_of(source.name).extension);
   if (named == FileFormat::kStl) return parse_stl_binary(source);
   if (named == FileFormat::kPly)
-    return source.bad_line(bytes.data(), "a PLY file begins with a line 'ply', this one with " +
-                                             TextCursor(bytes).found());
+    return source.bad_line(bytes.data(),
+                           "a PLY file begins with a line 'ply', this one with " + TextCursor(bytes).found());
   if (named == FileFormat::kOff) return parse_off(source);
   if (named == FileFormat::kObj || is_obj_keyword(word)) return parse_obj(source);
   return fail(ErrorCode::kUnreadable, "the content is none of PLY, OBJ, OFF, STL", {source.name, {}, {}});
@@ -157,9 +161,10 @@ Result<MeshFile> parse_content(const Source& source) {
 
 /// Refuses what no encoder could write: channels of the wrong size, indices and offsets that point nowhere.
 Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& options) {
-  if (mesh.is_triangles() ? mesh.corners.size() % 3 != 0
-                          : mesh.face_offsets.front() != 0 || mesh.face_offsets.back() != mesh.corners.size() ||
-                                !std::is_sorted(mesh.face_offsets.begin(), mesh.face_offsets.end()))
+  if (mesh.is_triangles()
+          ? mesh.corners.size() % 3 != 0
+          : mesh.face_offsets.front() != 0 || mesh.face_offsets.back() != mesh.corners.size() ||
+                !std::is_sorted(mesh.face_offsets.begin(), mesh.face_offsets.end()))
     return fail(ErrorCode::kUsage, "the face offsets of the mesh do not fit its corners");
   for (std::size_t c = 0; c < mesh.corners.size(); ++c)
     if (mesh.corners[c] >= mesh.points.size())
@@ -167,8 +172,10 @@ Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& opti
                                          std::to_string(mesh.corners[c]) + " of " +
                                          std::to_string(mesh.points.size()));
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
-    if (!std::isfinite(mesh.points[i].x) || !std::isfinite(mesh.points[i].y) || !std::isfinite(mesh.points[i].z))
-      return fail(ErrorCode::kUnsuitable, "point " + std::to_string(i) + " has a coordinate that is not finite");
+    if (!std::isfinite(mesh.points[i].x) || !std::isfinite(mesh.points[i].y) ||
+        !std::isfinite(mesh.points[i].z))
+      return fail(ErrorCode::kUnsuitable,
+                  "point " + std::to_string(i) + " has a coordinate that is not finite");
   const auto check = [](const std::vector<Channel>& channels, std::size_t elements) -> Result<void> {
     for (const Channel& c : channels)
       if (c.scalar_count() != elements * c.components)
@@ -183,10 +190,12 @@ Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& opti
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const std::size_t corners = mesh.face(f).size();
     if (corners < 3)
-      return fail(ErrorCode::kUnsuitable, "face " + std::to_string(f) + " has " + std::to_string(corners) + " corners");
+      return fail(ErrorCode::kUnsuitable,
+                  "face " + std::to_string(f) + " has " + std::to_string(corners) + " corners");
     if (corners > 3 && options.format == FileFormat::kStl)
-      return fail(ErrorCode::kUnsuitable, "face " + std::to_string(f) + " has " + std::to_string(corners) +
-                                              " corners and STL holds triangles only: triangulate the mesh first");
+      return fail(ErrorCode::kUnsuitable,
+                  "face " + std::to_string(f) + " has " + std::to_string(corners) +
+                      " corners and STL holds triangles only: triangulate the mesh first");
   }
   if (options.format == FileFormat::kStl && options.encoding == FileEncoding::kBinaryBigEndian)
     return fail(ErrorCode::kUsage, "STL has no big-endian form");
@@ -196,10 +205,18 @@ Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& opti
 Result<Notes> encode(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out) {
   Notes notes;
   switch (options.format) {
-    case FileFormat::kPly: encode_ply(mesh, options, out, notes); break;
-    case FileFormat::kObj: encode_obj(mesh, options, out, notes); break;
-    case FileFormat::kOff: encode_off(mesh, options, out, notes); break;
-    case FileFormat::kStl: encode_stl(mesh, options, out, notes); break;
+    case FileFormat::kPly:
+      encode_ply(mesh, options, out, notes);
+      break;
+    case FileFormat::kObj:
+      encode_obj(mesh, options, out, notes);
+      break;
+    case FileFormat::kOff:
+      encode_off(mesh, options, out, notes);
+      break;
+    case FileFormat::kStl:
+      encode_stl(mesh, options, out, notes);
+      break;
   }
   VKMESH_CHECK(out.finish());
   return notes;
@@ -216,9 +233,12 @@ std::string name_of(FileFormat format) {
 
 std::string name_of(FileEncoding encoding) {
   switch (encoding) {
-    case FileEncoding::kAscii: return "ascii";
-    case FileEncoding::kBinaryLittleEndian: return "binary_little_endian";
-    case FileEncoding::kBinaryBigEndian: return "binary_big_endian";
+    case FileEncoding::kAscii:
+      return "ascii";
+    case FileEncoding::kBinaryLittleEndian:
+      return "binary_little_endian";
+    case FileEncoding::kBinaryBigEndian:
+      return "binary_big_endian";
   }
   return "unknown";
 }
@@ -233,7 +253,8 @@ Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions&
   });
 }
 
-Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options) {
+Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, const std::string& name,
+                            const ReadOptions& options) {
   return detail::catching([&]() -> Result<MeshFile> {
     const std::string_view given(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!detail::is_gzip(given)) return detail::parse_content({given, name, options.progress, 0});
@@ -257,7 +278,8 @@ Result<WriteOptions> write_options_for(const std::filesystem::path& path) {
     const auto format = detail::format_named(hint.extension);
     if (!format) {
       std::string known;
-      for (const detail::KnownFormat& f : detail::kFormats) known += std::string(known.empty() ? "" : ", ") + "." + f.name;
+      for (const detail::KnownFormat& f : detail::kFormats)
+        known += std::string(known.empty() ? "" : ", ") + "." + f.name;
       return fail(ErrorCode::kUsage,
                   "the extension names no format that can be written (" + known + ", each also with .gz)",
                   {path.string(), {}, {}});

@@ -20,11 +20,12 @@ namespace vkmesh::detail {
 namespace {
 
 // Keywords that are passed over. Those of the second list may go on over several lines.
-constexpr std::array<std::string_view, 12> kNames = {"g",      "s",      "o",       "mg",      "usemtl",     "mtllib",
-                                                     "usemap", "maplib", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+constexpr std::array<std::string_view, 12> kNames = {"g",        "s",        "o",          "mg",
+                                                     "usemtl",   "mtllib",   "usemap",     "maplib",
+                                                     "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 constexpr std::array<std::string_view, 24> kIgnored = {
-    "p",    "l",    "vp",   "deg", "bmat", "step", "cstype", "curv",  "curv2", "surf", "parm",   "trim",
-    "hole", "scrv", "sp",   "end", "con",  "bevel", "lod",   "ctech", "stech", "bzp",  "bsp",    "cdc"};
+    "p",    "l",    "vp", "deg", "bmat", "step",  "cstype", "curv",  "curv2", "surf", "parm", "trim",
+    "hole", "scrv", "sp", "end", "con",  "bevel", "lod",    "ctech", "stech", "bzp",  "bsp",  "cdc"};
 
 template <std::size_t N>
 bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {
@@ -212,8 +213,8 @@ class ObjReader {
     std::uint32_t i = 0;
     const char* at = text_.at();
     if (!index(attribute.count(), i, highest))
-      return source_.bad_line(at, std::string("expected the index of a '") + attribute.keyword + "' line, found " +
-                                      TextCursor(rest(at)).found());
+      return source_.bad_line(at, std::string("expected the index of a '") + attribute.keyword +
+                                      "' line, found " + TextCursor(rest(at)).found());
     if (attribute.of_corner.size() == corner) attribute.of_corner.push_back(i);
     ++attribute.with;
     return {};
@@ -229,16 +230,19 @@ class ObjReader {
       std::uint32_t point = 0;
       const char* at = text_.at();
       if (!index(mesh.points.size(), point, highest_point_))
-        return source_.bad_line(at, "expected the index of a vertex (of " + std::to_string(mesh.points.size()) +
-                                        " so far), found " + TextCursor(rest(at)).found());
+        return source_.bad_line(at, "expected the index of a vertex (of " +
+                                        std::to_string(mesh.points.size()) + " so far), found " +
+                                        TextCursor(rest(at)).found());
       const std::size_t corner = mesh.corners.size();
       collector.corner(point);
       if (text_.accept('/')) {
         const bool uv = !ends_number() && *text_.at() != '/';
         if (uv) VKMESH_CHECK(corner_attribute(uv_, highest_uv_, corner));
-        if (text_.accept('/')) VKMESH_CHECK(corner_attribute(normal_, highest_normal_, corner));
+        if (text_.accept('/') && !ends_number())
+          VKMESH_CHECK(corner_attribute(normal_, highest_normal_, corner));
       }
-      if (!ends_number()) return source_.bad_line(at, "expected a corner, found " + TextCursor(rest(at)).found());
+      if (!ends_number())
+        return source_.bad_line(at, "expected a corner, found " + TextCursor(rest(at)).found());
     }
     if (count < 3) return source_.bad_line(line, "a face has " + std::to_string(count) + " corners");
     if (!collector.end_face(count))
@@ -276,11 +280,12 @@ class ObjReader {
     return {};
   }
 
-  /// Attributes of corners become a channel when every corner has one: of points when point i has the i-th, in all its
-  /// corners, else of corners.
+  /// Attributes of corners become a channel when every corner has one: of points when point i has the i-th,
+  /// in all its corners, else of corners.
   void keep(Attribute& attribute, IndexedFaceSet& mesh) {
     if (attribute.count() == 0) return;
-    const bool each = attribute.with == mesh.corners.size() && attribute.of_corner.size() == mesh.corners.size();
+    const bool each =
+        attribute.with == mesh.corners.size() && attribute.of_corner.size() == mesh.corners.size();
     if (each && attribute.count() == mesh.points.size() && attribute.of_corner == mesh.corners) {
       mesh.point_channels.push_back({attribute.channel, attribute.components, std::move(attribute.values)});
     } else if (each) {
@@ -363,14 +368,17 @@ struct OutAttribute {
 
 }  // namespace
 
-Result<MeshFile> parse_obj(const Source& source) { return ObjReader(source).read(); }
+Result<MeshFile> parse_obj(const Source& source) {
+  return ObjReader(source).read();
+}
 
 void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
   OutAttribute<2> uv("vt", "uv", mesh);
   OutAttribute<3> normal("vn", "normal", mesh);
   const Channel* color = find_channel(mesh.point_channels, "color");
   if (color != nullptr && color->components != 3 && color->components != 4) color = nullptr;
-  if (color != nullptr && color->components == 4) notes.push_back("vertex opacities left out: OBJ holds none");
+  if (color != nullptr && color->components == 4)
+    notes.push_back("vertex opacities left out: OBJ holds none");
   for (const Channel& c : mesh.point_channels)
     if (&c != uv.of_points && &c != normal.of_points && &c != color)
       note_left_out(notes, "point", c, "OBJ holds normals, uv and colours");

@@ -172,14 +172,16 @@ class OffReader {
       std::uint64_t count = 0;
       if (!text_.number(count)) return expected("the number of corners of face " + std::to_string(f));
       if (count < 3)
-        return source_.bad_line(line, "face " + std::to_string(f) + " has " + std::to_string(count) + " corners");
+        return source_.bad_line(line,
+                                "face " + std::to_string(f) + " has " + std::to_string(count) + " corners");
       for (std::uint64_t k = 0; k < count; ++k) {
         std::int64_t index = 0;
-        if (!text_.number(index)) return expected("corner " + std::to_string(k) + " of face " + std::to_string(f));
+        if (!text_.number(index))
+          return expected("corner " + std::to_string(k) + " of face " + std::to_string(f));
         if (index < 0 || static_cast<std::uint64_t>(index) >= points_)
-          return source_.bad_line(line, "face " + std::to_string(f) + " names vertex " + std::to_string(index) +
-                                            ", but there are " + std::to_string(points_) +
-                                            " vertices, counted from 0");
+          return source_.bad_line(line, "face " + std::to_string(f) + " names vertex " +
+                                            std::to_string(index) + ", but there are " +
+                                            std::to_string(points_) + " vertices, counted from 0");
         collector.corner(static_cast<std::uint32_t>(index));
       }
       if (!collector.end_face(count))
@@ -191,7 +193,8 @@ class OffReader {
       }
     }
     if (color.components > 0 && uncolored == 0 && color.values.size() == faces_ * color.components)
-      out.face_channels.push_back(color_channel(std::move(color.values), color.components, color.whole_numbers));
+      out.face_channels.push_back(
+          color_channel(std::move(color.values), color.components, color.whole_numbers));
     else if (uncolored < faces_)
       file_.notes.push_back("colours of " + std::to_string(faces_ - uncolored) +
                             " faces ignored: not all faces have one of 3 or 4 components");
@@ -223,12 +226,14 @@ class OffReader {
 const Channel* holdable(const std::vector<Channel>& channels, const std::string& name) {
   const Channel* c = find_channel(channels, name);
   if (c == nullptr) return nullptr;
-  const bool fits = name == "normal" ? c->components == 3 : name == "uv" ? c->components == 2
-                                                                         : c->components == 3 || c->components == 4;
+  const bool fits = name == "normal" ? c->components == 3
+                    : name == "uv"   ? c->components == 2
+                                     : c->components == 3 || c->components == 4;
   return fits ? c : nullptr;
 }
 
-/// The values of one element, each with a blank before it. 8-bit colours are whole numbers, other colours fractions.
+/// The values of one element, each with a blank before it. 8-bit colours are whole numbers, other colours
+/// fractions.
 void put_values(Output& out, const Channel& channel, std::size_t i) {
   const bool color = channel.name == "color";
   const bool bytes = std::holds_alternative<std::vector<std::uint8_t>>(channel.values);
@@ -246,7 +251,9 @@ void put_values(Output& out, const Channel& channel, std::size_t i) {
 
 }  // namespace
 
-Result<MeshFile> parse_off(const Source& source) { return OffReader(source).read(); }
+Result<MeshFile> parse_off(const Source& source) {
+  return OffReader(source).read();
+}
 
 void encode_off(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
   const Channel* normal = holdable(mesh.point_channels, "normal");

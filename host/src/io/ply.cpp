@@ -25,7 +25,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "byte orders are told apart on this assumption");
 
-// ---------------------------------------------------------------------------------------------------- scalar types
+// ---------------------------------------------------------------------------------------------------- scalar
+// types
 
 enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
@@ -52,20 +53,30 @@ std::optional<Scalar> scalar_of(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view name_of_scalar(Scalar type) { return kScalarNames[static_cast<std::size_t>(type)].name; }
+std::string_view name_of_scalar(Scalar type) {
+  return kScalarNames[static_cast<std::size_t>(type)].name;
+}
 
 /// Calls f with a value of the C++ type.
 template <class F>
 decltype(auto) with_type(Scalar type, F&& f) {
   switch (type) {
-    case Scalar::kInt8: return f(std::int8_t{});
-    case Scalar::kUint8: return f(std::uint8_t{});
-    case Scalar::kInt16: return f(std::int16_t{});
-    case Scalar::kUint16: return f(std::uint16_t{});
-    case Scalar::kInt32: return f(std::int32_t{});
-    case Scalar::kUint32: return f(std::uint32_t{});
-    case Scalar::kFloat: return f(float{});
-    case Scalar::kDouble: break;
+    case Scalar::kInt8:
+      return f(std::int8_t{});
+    case Scalar::kUint8:
+      return f(std::uint8_t{});
+    case Scalar::kInt16:
+      return f(std::int16_t{});
+    case Scalar::kUint16:
+      return f(std::uint16_t{});
+    case Scalar::kInt32:
+      return f(std::int32_t{});
+    case Scalar::kUint32:
+      return f(std::uint32_t{});
+    case Scalar::kFloat:
+      return f(float{});
+    case Scalar::kDouble:
+      break;
   }
   return f(double{});
 }
@@ -74,7 +85,9 @@ std::size_t size_of(Scalar type) {
   return with_type(type, [](auto t) { return sizeof(t); });
 }
 
-bool is_integer(Scalar type) { return type != Scalar::kFloat && type != Scalar::kDouble; }
+bool is_integer(Scalar type) {
+  return type != Scalar::kFloat && type != Scalar::kDouble;
+}
 
 template <class T>
 T swap_bytes(T value) {
@@ -83,7 +96,8 @@ T swap_bytes(T value) {
   return std::bit_cast<T>(bytes);
 }
 
-// ---------------------------------------------------------------------------------------------------------- header
+// ----------------------------------------------------------------------------------------------------------
+// header
 
 struct Property {
   std::string name;
@@ -106,7 +120,8 @@ struct Element {
   [[nodiscard]] bool has_lists() const {
     return std::any_of(properties.begin(), properties.end(), [](const Property& p) { return p.list; });
   }
-  /// The fewest bytes that one of these takes, as binary and as text (a digit and what parts it from the next).
+  /// The fewest bytes that one of these takes, as binary and as text (a digit and what parts it from the
+  /// next).
   [[nodiscard]] std::uint64_t least_bytes(bool ascii) const {
     std::uint64_t bytes = 0;
     for (const Property& p : properties) bytes += ascii ? 2 : size_of(p.list ? p.count_type : p.type);
@@ -243,7 +258,8 @@ class HeaderReader {
   Header header_;
 };
 
-// ------------------------------------------------------------------------------------- properties become channels
+// ------------------------------------------------------------------------------------- properties become
+// channels
 
 /// Properties that make up one channel.
 struct Group {
@@ -323,7 +339,8 @@ std::vector<Group> group_properties(const Element& element, std::set<const Prope
   return groups;
 }
 
-// ------------------------------------------------------------------------------------------------------------ body
+// ------------------------------------------------------------------------------------------------------------
+// body
 
 /// Where the values of a scalar property go; nowhere by default.
 struct Sink {
@@ -350,6 +367,7 @@ void make_channels(const Element& element, const std::vector<Group>& groups, std
         with_type(type, [&](auto t) { return values_of<decltype(t)>(element.count * components); });
     auto* data =
         std::visit([](auto& v) { return reinterpret_cast<std::byte*>(v.data()); }, channels[g].values);
+    if (element.count == 0) continue;  // An empty vector has no data to point into.
     for (std::size_t k = 0; k < components; ++k) {
       const auto place = static_cast<std::size_t>(groups[g].properties[k] - element.properties.data());
       sinks[place] = {data + k * size_of(type), components * size_of(type), false};
@@ -374,8 +392,8 @@ class AsciiBody {
   }
   Result<void> end_element(const Element& element) {
     if (text_.line_done() || element.properties.empty()) return {};
-    return source_.bad_line(
-        text_.at(), "a line of element '" + element.name + "' holds more than its properties: " + text_.found());
+    return source_.bad_line(text_.at(), "a line of element '" + element.name +
+                                            "' holds more than its properties: " + text_.found());
   }
   /// Passes over elements whose values nobody wants.
   Result<void> skip(const Element& element) {
@@ -388,9 +406,10 @@ class AsciiBody {
     return {};
   }
   tl::unexpected<Error> bad(const Element& element, std::uint64_t i, const Property& p) const {
-    return source_.bad_line(text_.at(), element.name + " " + std::to_string(i) + ": expected '" + p.name + "' (" +
-                                            (p.list ? "list of " : "") + std::string(name_of_scalar(p.type)) +
-                                            "), found " + text_.found());
+    return source_.bad_line(text_.at(), element.name + " " + std::to_string(i) + ": expected '" + p.name +
+                                            "' (" + (p.list ? "list of " : "") +
+                                            std::string(name_of_scalar(p.type)) + "), found " +
+                                            text_.found());
   }
   tl::unexpected<Error> bad(const char* where, std::string message) const {
     return source_.bad_line(where, std::move(message));
@@ -498,13 +517,14 @@ class BodyReader {
     const std::uint64_t least = element.least_bytes(Body::kAscii);
     const std::uint64_t left = body_.left() + (Body::kAscii ? 1 : 0);  // The last line may lack its end.
     if (least > 0 && element.count > left / least)
-      return source_.bad_line(element.at, "the header promises " + std::to_string(element.count) + " of element '" +
-                                              element.name + "', at least " + std::to_string(least) +
-                                              " bytes each, but only " + std::to_string(body_.left()) +
-                                              " bytes are left for them");
+      return source_.bad_line(element.at, "the header promises " + std::to_string(element.count) +
+                                              " of element '" + element.name + "', at least " +
+                                              std::to_string(least) + " bytes each, but only " +
+                                              std::to_string(body_.left()) + " bytes are left for them");
     if (element.count > kMaxElements && (element.name == "vertex" || element.name == "face"))
-      return source_.bad_line(element.at, "the header promises " + std::to_string(element.count) + " of element '" +
-                                              element.name + "': more than 32-bit indices can number");
+      return source_.bad_line(element.at, "the header promises " + std::to_string(element.count) +
+                                              " of element '" + element.name +
+                                              "': more than 32-bit indices can number");
     return {};
   }
 
@@ -539,8 +559,8 @@ class BodyReader {
       if (!body_.scalar(value)) return body_.bad(element, i, p);
       if constexpr (std::is_signed_v<decltype(value)>)
         if (value < 0)
-          return body_.bad(at, element.name + " " + std::to_string(i) + ": list '" + p.name +
-                                   "' has a negative count");
+          return body_.bad(
+              at, element.name + " " + std::to_string(i) + ": list '" + p.name + "' has a negative count");
       count = static_cast<std::uint64_t>(value);
       return {};
     });
@@ -554,13 +574,16 @@ class BodyReader {
     for (const auto& [axis, name] : {std::pair{0, "x"}, {1, "y"}, {2, "z"}}) {
       const Property* p = element.find(name);
       if (p == nullptr || p->list)
-        return source_.bad_line(element.at, std::string("element 'vertex' has no scalar property '") + name + "'");
+        return source_.bad_line(element.at,
+                                std::string("element 'vertex' has no scalar property '") + name + "'");
       taken.insert(p);
+      if (element.count == 0) continue;
       sinks[static_cast<std::size_t>(p - element.properties.data())] = {
           reinterpret_cast<std::byte*>(mesh.points.data()) + static_cast<std::size_t>(axis) * sizeof(float),
           sizeof(Vec3), true};
     }
-    make_channels(element, group_properties(element, std::move(taken), file_.notes), mesh.point_channels, sinks);
+    make_channels(element, group_properties(element, std::move(taken), file_.notes), mesh.point_channels,
+                  sinks);
 
     if constexpr (!Body::kAscii && requires { requires Body::kNative; })
       if (is_packed_floats(element)) return packed_points(mesh.points);
@@ -581,7 +604,8 @@ class BodyReader {
   static bool is_packed_floats(const Element& element) {
     if (element.properties.size() != 3) return false;
     for (std::size_t k = 0; k < 3; ++k)
-      if (element.properties[k].type != Scalar::kFloat || element.properties[k].name[0] != "xyz"[k]) return false;
+      if (element.properties[k].type != Scalar::kFloat || element.properties[k].name[0] != "xyz"[k])
+        return false;
     return true;
   }
 
@@ -594,10 +618,13 @@ class BodyReader {
     return source_.tick(body_.at());
   }
 
-  static bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+  static bool is_finite(const Vec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  }
 
   tl::unexpected<Error> not_finite(const char* at, std::uint64_t i) const {
-    return body_.bad(at, "vertex " + std::to_string(i) + " has a coordinate that is not finite as a 32-bit float");
+    return body_.bad(
+        at, "vertex " + std::to_string(i) + " has a coordinate that is not finite as a 32-bit float");
   }
 
   Result<void> faces(const Element& element) {
@@ -606,8 +633,8 @@ class BodyReader {
     if (indices == nullptr) indices = element.find("vertex_index");
     if (indices == nullptr || !indices->list || !is_integer(indices->type)) {
       if (element.count == 0) return {};
-      return source_.bad_line(
-          element.at, "element 'face' has no list of integers 'vertex_indices' or 'vertex_index'");
+      return source_.bad_line(element.at,
+                              "element 'face' has no list of integers 'vertex_indices' or 'vertex_index'");
     }
     std::vector<Sink> sinks(element.properties.size());
     make_channels(element, group_properties(element, {indices}, file_.notes), mesh.face_channels, sinks);
@@ -615,7 +642,8 @@ class BodyReader {
     FaceCollector collector(mesh);
     std::uint64_t done = 0;
     if constexpr (!Body::kAscii && requires { requires Body::kNative; })
-      if (element.properties.size() == 1 && indices->count_type == Scalar::kUint8 && size_of(indices->type) == 4) {
+      if (element.properties.size() == 1 && indices->count_type == Scalar::kUint8 &&
+          size_of(indices->type) == 4) {
         VKMESH_TRY(done, packed_triangles(element, mesh.corners));
       }
     collector.start_with_triangles(done);
@@ -655,7 +683,8 @@ class BodyReader {
       }
       return {};
     }));
-    if (!collector.end_face(count)) return body_.bad(at, "the faces have more corners than 32-bit indices can number");
+    if (!collector.end_face(count))
+      return body_.bad(at, "the faces have more corners than 32-bit indices can number");
     return {};
   }
 
@@ -664,8 +693,8 @@ class BodyReader {
                              std::to_string(points_) + " vertices, counted from 0");
   }
 
-  /// Triangles as nearly every binary file has them: one byte 3, three 4-byte indices. Returns how many faces it took:
-  /// all, or those before the first that is something else.
+  /// Triangles as nearly every binary file has them: one byte 3, three 4-byte indices. Returns how many faces
+  /// it took: all, or those before the first that is something else.
   Result<std::uint64_t> packed_triangles(const Element& element, std::vector<std::uint32_t>& corners) {
     constexpr std::size_t kBytes = 1 + 3 * sizeof(std::uint32_t);
     const char* from = body_.at();
@@ -679,8 +708,9 @@ class BodyReader {
       if (std::max({face[0], face[1], face[2]}) < points_) continue;
       const auto k = std::find_if(face, face + 3, [&](std::uint32_t c) { return c >= points_; }) - face;
       const bool is_signed = element.properties[0].type == Scalar::kInt32;
-      return bad_index(from + f * kBytes + 1 + static_cast<std::size_t>(k) * sizeof(std::uint32_t), f,
-                       is_signed ? std::to_string(static_cast<std::int32_t>(face[k])) : std::to_string(face[k]));
+      return bad_index(
+          from + f * kBytes + 1 + static_cast<std::size_t>(k) * sizeof(std::uint32_t), f,
+          is_signed ? std::to_string(static_cast<std::int32_t>(face[k])) : std::to_string(face[k]));
     }
     corners.resize(3 * f);
     body_.advance(f * kBytes);
@@ -704,13 +734,16 @@ class BodyReader {
 
 Result<MeshFile> parse_ply(const Source& source) {
   VKMESH_TRY(const Header header, HeaderReader(source).read());
-  if (header.find("vertex") == nullptr) return source.bad_line(header.body, "the header has no element 'vertex'");
+  if (header.find("vertex") == nullptr)
+    return source.bad_line(header.body - 1, "the header has no element 'vertex'");
   MeshFile file;
   file.geometry = IndexedFaceSet{};
   file.format = FileFormat::kPly;
   file.encoding = header.encoding;
   switch (header.encoding) {
-    case FileEncoding::kAscii: VKMESH_CHECK(BodyReader<AsciiBody>(source, header, file).read()); break;
+    case FileEncoding::kAscii:
+      VKMESH_CHECK(BodyReader<AsciiBody>(source, header, file).read());
+      break;
     case FileEncoding::kBinaryLittleEndian:
       VKMESH_CHECK(BodyReader<BinaryBody<false>>(source, header, file).read());
       break;
@@ -721,7 +754,8 @@ Result<MeshFile> parse_ply(const Source& source) {
   return file;
 }
 
-// --------------------------------------------------------------------------------------------------------- writing
+// ---------------------------------------------------------------------------------------------------------
+// writing
 
 namespace {
 
@@ -735,8 +769,8 @@ struct OutColumn {
 
 /// The alternatives of ChannelValues, in their order.
 Scalar scalar_type(const Channel& channel) {
-  constexpr std::array kTypes = {Scalar::kFloat,  Scalar::kDouble, Scalar::kInt8,  Scalar::kUint8,
-                                 Scalar::kInt16,  Scalar::kUint16, Scalar::kInt32, Scalar::kUint32};
+  constexpr std::array kTypes = {Scalar::kFloat, Scalar::kDouble, Scalar::kInt8,  Scalar::kUint8,
+                                 Scalar::kInt16, Scalar::kUint16, Scalar::kInt32, Scalar::kUint32};
   static_assert(kTypes.size() == std::variant_size_v<ChannelValues>);
   return kTypes[channel.values.index()];
 }
@@ -758,16 +792,18 @@ std::vector<OutColumn> columns_of(const std::vector<Channel>& channels, std::set
     else if (channel.components == 1)
       names = {channel.name};
     else
-      for (unsigned k = 0; k < channel.components; ++k) names.push_back(channel.name + "_" + std::to_string(k));
+      for (unsigned k = 0; k < channel.components; ++k)
+        names.push_back(channel.name + "_" + std::to_string(k));
     names.resize(channel.components);
 
-    const bool word = !channel.name.empty() && std::none_of(channel.name.begin(), channel.name.end(), [](char c) {
-      return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f;
-    });
+    const bool word = !channel.name.empty() &&
+                      std::none_of(channel.name.begin(), channel.name.end(),
+                                   [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; });
     const bool free =
         std::none_of(names.begin(), names.end(), [&](const std::string& n) { return used.contains(n); });
     if (!word || !free || channel.components == 0) {
-      note_left_out(notes, element, channel, word ? "its property names are taken" : "its name is not one word");
+      note_left_out(notes, element, channel,
+                    word ? "its property names are taken" : "its name is not one word");
       continue;
     }
     used.insert(names.begin(), names.end());
@@ -860,7 +896,8 @@ void encode_ply(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
   for (const OutColumn& c : point_columns) header += property(c);
   header += "element face " + std::to_string(mesh.face_count()) + "\nproperty list ";
   header += wide_counts ? "uint " : "uchar ";
-  header += mesh.points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) ? "uint" : "int";
+  header += mesh.points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) ? "uint"
+                                                                                                    : "int";
   header += " vertex_indices\n";
   for (const OutColumn& c : face_columns) header += property(c);
   out.put(header + "end_header\n");

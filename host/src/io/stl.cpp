@@ -20,7 +20,9 @@ constexpr std::size_t kHeader = 80;
 constexpr std::size_t kStart = kHeader + 4;
 constexpr std::size_t kFacet = 50;  // Normal, three corners, 16 bits of attribute.
 
-bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool is_finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 bool same_word(std::string_view word, std::string_view lower) {
   return std::equal(word.begin(), word.end(), lower.begin(), lower.end(),
@@ -82,8 +84,9 @@ class AsciiStlReader {
         return {};
       }
       if (!same_word(word, "facet"))
-        return source_.bad_line(at, word.empty() ? "the file ends without 'endsolid'"
-                                                 : "expected 'facet' or 'endsolid', found " + TextCursor(word).found());
+        return source_.bad_line(
+            at, word.empty() ? "the file ends without 'endsolid'"
+                             : "expected 'facet' or 'endsolid', found " + TextCursor(word).found());
       VKMESH_CHECK(facet(at));
     }
   }
@@ -114,7 +117,8 @@ class AsciiStlReader {
     if (soup_.corners.size() > kMaxElements)
       return source_.bad_line(at, "the facets have more corners than 32-bit indices can number");
     if (count != 3 && soup_.face_offsets.empty())
-      for (std::size_t f = 0; f <= faces_; ++f) soup_.face_offsets.push_back(static_cast<std::uint32_t>(3 * f));
+      for (std::size_t f = 0; f <= faces_; ++f)
+        soup_.face_offsets.push_back(static_cast<std::uint32_t>(3 * f));
     ++faces_;
     if (!soup_.face_offsets.empty())
       soup_.face_offsets.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
@@ -145,7 +149,9 @@ std::uint64_t stl_binary_size(std::string_view bytes) {
   return kStart + std::uint64_t{kFacet} * facets;
 }
 
-Result<MeshFile> parse_stl_ascii(const Source& source) { return AsciiStlReader(source).read(); }
+Result<MeshFile> parse_stl_ascii(const Source& source) {
+  return AsciiStlReader(source).read();
+}
 
 Result<MeshFile> parse_stl_binary(const Source& source) {
   const std::string_view bytes = source.bytes;
@@ -154,11 +160,13 @@ Result<MeshFile> parse_stl_binary(const Source& source) {
     return source.bad_byte(end, "the file ends within the 84 bytes that begin a binary STL file");
   const std::uint64_t promised = stl_binary_size(bytes), facets = (promised - kStart) / kFacet;
   if (promised != bytes.size())
-    return source.bad_byte(bytes.data() + kHeader,
-                           "the header promises " + std::to_string(facets) + " facets, " + std::to_string(promised) +
-                               " bytes in all, but the file has " + std::to_string(bytes.size()));
+    return source.bad_byte(bytes.data() + kHeader, "the header promises " + std::to_string(facets) +
+                                                       " facets, " + std::to_string(promised) +
+                                                       " bytes in all, but the file has " +
+                                                       std::to_string(bytes.size()));
   if (3 * facets > kMaxElements)
-    return source.bad_byte(bytes.data() + kHeader, "the facets have more corners than 32-bit indices can number");
+    return source.bad_byte(bytes.data() + kHeader,
+                           "the facets have more corners than 32-bit indices can number");
 
   PolygonSoup soup;
   soup.corners.resize(3 * facets);
@@ -199,8 +207,9 @@ void encode_stl(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     note_left_out(notes, "corner", c, "STL has no attributes of corners");
   for (const Channel& c : mesh.face_channels) {
     if (&c == attribute) continue;
-    note_left_out(notes, "face", c,
-                  c.name == "normal" ? "facet normals follow from the positions" : "STL holds none of that name");
+    note_left_out(
+        notes, "face", c,
+        c.name == "normal" ? "facet normals follow from the positions" : "STL holds none of that name");
   }
 
   const std::vector<std::string> comment = comment_lines(options.comment);
@@ -240,8 +249,9 @@ void encode_stl(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     } else {
       std::memcpy(to, &normal, 12);
       std::memcpy(to + 12, corners.data(), 36);
-      const std::uint16_t bits =
-          attribute != nullptr ? std::get<std::vector<std::uint16_t>>(attribute->values)[f] : std::uint16_t{0};
+      const std::uint16_t bits = attribute != nullptr
+                                     ? std::get<std::vector<std::uint16_t>>(attribute->values)[f]
+                                     : std::uint16_t{0};
       std::memcpy(to + 48, &bits, sizeof(bits));
       to += kFacet;
     }

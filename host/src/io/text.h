@@ -13,9 +13,10 @@
 
 namespace vkmesh::detail {
 
-/// Walks over text. Locale plays no part. Blanks are space, tab, vertical tab and form feed; a line ends at a line feed
-/// or a carriage return, so that the pair of both is a line and an empty one. The parse functions return false where
-/// the text is something else and leave the place at its start; found() then says what is there.
+/// Walks over text. Locale plays no part. Blanks are space, tab, vertical tab and form feed; a line ends at a
+/// line feed or a carriage return, so that the pair of both is a line and an empty one. The parse functions
+/// return false where the text is something else and leave the place at its start; found() then says what is
+/// there.
 class TextCursor {
  public:
   /// `comment` begins a comment that runs to the end of its line; 0 for none.
@@ -57,8 +58,8 @@ class TextCursor {
     return {from, static_cast<std::size_t>(at_ - from)};
   }
 
-  /// The next number of the line, which must end where a number ends. T is an integer or float type; floats too small
-  /// become 0 or subnormal, floats too large are refused.
+  /// The next number of the line, which must end where a number ends. T is an integer or float type; floats
+  /// too small become 0 or subnormal, floats too large are refused.
   template <class T>
   bool number(T& value) {
     const char* from = at_;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -43,7 +44,8 @@ class Recorder {
 
   /// Into the caller's command buffer, which must be recording, outside a render pass, for the context's
   /// queue family. The caller submits it, and places what barriers are needed against its own work before and
-  /// after: the recorder's is done in the stages COMPUTE_SHADER and TRANSFER. No time-stamps. Errors: kUsage
+  /// after: the recorder's is done in the stages COMPUTE_SHADER and TRANSFER, and for drawing in those of a
+  /// graphics pipeline. No time-stamps. Errors: kUsage
   /// for a null handle.
   [[nodiscard]] static Result<Recorder> into(Context& context, VkCommandBuffer command_buffer);
 
@@ -70,6 +72,17 @@ class Recorder {
   /// Copies `bytes` bytes. Errors: kUsage for ranges outside the buffers, or after submit_and_wait().
   [[nodiscard]] Result<void> copy(const Buffer& from, const Buffer& to, std::uint64_t bytes,
                                   std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
+
+  /// Writes `data` to the start of a buffer; the bytes travel in the command buffer. Errors: kUsage for a size
+  /// that is no multiple of four, above 65536 or above the buffer's, or after submit_and_wait().
+  [[nodiscard]] Result<void> update(const Buffer& to, std::span<const std::byte> data);
+
+  /// Calls `commands` with the command buffer, to record drawing that reads and writes these buffers: as
+  /// vertices, indices and in shaders, or by transfers. A render pass must begin and end inside. Errors: kNoDevice
+  /// where the queue does not draw; kUsage after submit_and_wait().
+  [[nodiscard]] Result<void> graphics(const std::function<void(VkCommandBuffer)>& commands,
+                                      std::span<const Buffer* const> reads,
+                                      std::span<const Buffer* const> writes);
 
   /// Starts a section whose time section_times() will tell; it ends where the next one starts, or with the
   /// work. At most 64 sections; further ones, and all of them on a device without time-stamps, are not timed.

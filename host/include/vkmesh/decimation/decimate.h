@@ -33,7 +33,7 @@ struct DecimateOptions {
 
 enum class DecimateStop {
   kTargetReached,   ///< target_faces was reached.
-  kErrorBound,      ///< No collapse is left, and some would exceed max_error.
+  kErrorBound,      ///< No collapse is left; some were refused for their error.
   kNoLegalCollapse  ///< Every remaining collapse is illegal (link condition, fold-over).
 };
 

@@ -39,8 +39,9 @@ struct ReadOptions {
 
 /// Reads a file of any known format. The content decides the format, the extension only where the content
 /// leaves it open (OBJ). gzip is recognised by its magic bytes. "-" reads standard input. O(bytes); no
-/// allocation that the bytes present do not justify. Errors: kUnreadable (missing, a directory, malformed, an
-/// index out of range, a coordinate that is not finite; with file and line or byte), kOutOfMemory,
+/// allocation that the bytes present do not justify. A face of fewer than three corners is refused; one
+/// that repeats a point is not (consolidate counts it). Errors: kUnreadable (missing, a directory, malformed,
+/// an index out of range, a coordinate that is not finite; with file and line or byte), kOutOfMemory,
 /// kInterrupted.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -1,0 +1,67 @@
+// vkmesh on the CPU.
+#include <memory>
+#include <utility>
+
+#include <vkmesh/consolidate.h>
+#include <vkmesh/decimation/decimate.h>
+#include <vkmesh/node_neighbours.h>
+#include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/vertex_normals.h>
+
+#include "bench/contestants.h"
+
+namespace vkmesh::bench {
+namespace {
+
+/// Times a function that returns a Result; the result is let go of after the watch has stopped.
+template <class Work>
+Result<double> timed(Work&& work) {
+  const Stopwatch watch;
+  const auto result = work();
+  const double milliseconds = watch.milliseconds();
+  if (!result) return tl::unexpected<Error>(result.error());
+  return milliseconds;
+}
+
+}  // namespace
+
+Result<void> add_host(Programme& programme, const Input& input) {
+  const std::string name = "vkmesh, CPU";
+  VKMESH_TRY(Consolidated consolidated, consolidate(input.mesh));
+  const auto mesh = std::make_shared<HalfEdgeMesh>(std::move(consolidated.mesh));
+  VKMESH_TRY(NodeNeighbours lists, node_neighbours(*mesh));
+  const auto neighbours = std::make_shared<NodeNeighbours>(std::move(lists));
+  const auto decimated = std::make_shared<Decimated>();
+
+  programme.contestants.push_back(
+      {step::kConstruction, name, [&input] { return timed([&] { return consolidate(input.mesh); }); }});
+  programme.contestants.push_back(
+      {step::kNeighbours, name, [mesh] { return timed([&] { return node_neighbours(*mesh); }); }});
+  programme.contestants.push_back({step::kNormals, name, [&input, mesh] {
+                                     return timed([&] { return vertex_normals(*mesh, input.mesh.points); });
+                                   }});
+  programme.contestants.push_back(
+      {step::kSmoothing, name, [&input, neighbours] {
+         LaplacianSmoothingOptions options;
+         options.iterations = kSmoothingSteps;
+         return timed([&] { return laplacian_smoothing(*neighbours, input.mesh.points, options); });
+       }});
+  programme.contestants.push_back({step::kDecimation, name,
+                                   [&input, mesh, decimated]() -> Result<double> {
+                                     DecimateOptions options;
+                                     options.target_faces = input.decimation_target;
+                                     const Stopwatch watch;
+                                     auto result = decimate(*mesh, input.mesh.points, options);
+                                     const double milliseconds = watch.milliseconds();
+                                     if (!result) return tl::unexpected<Error>(result.error());
+                                     *decimated = std::move(*result);
+                                     return milliseconds;
+                                   },
+                                   [decimated] {
+                                     const auto corners = decimated->mesh.origins();
+                                     return Surface{decimated->positions, {corners.begin(), corners.end()}};
+                                   }});
+  return {};
+}
+
+}  // namespace vkmesh::bench

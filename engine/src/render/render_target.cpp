@@ -1,0 +1,103 @@
+#include <cstring>
+#include <string>
+
+#include <vkmesh/engine/render_target.h>
+
+#include "catching.h"
+#include "device.h"
+#include "draw_params.h"
+#include "render/pipelines.h"
+#include "render/target_state.h"
+
+namespace vkmesh {
+
+RenderTarget::State::~State() {
+  const detail::Device& device = context.device();
+  if (framebuffer != VK_NULL_HANDLE && !device.abandoned.load())
+    device.functions.vkDestroyFramebuffer(device.handle, framebuffer, nullptr);
+}
+
+RenderTarget::RenderTarget(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RenderTarget::~RenderTarget() = default;
+RenderTarget::RenderTarget(RenderTarget&&) noexcept = default;
+RenderTarget& RenderTarget::operator=(RenderTarget&&) noexcept = default;
+
+Result<RenderTarget> RenderTarget::create(Context& context, std::uint32_t width, std::uint32_t height) {
+  return detail::catching([&]() -> Result<RenderTarget> {
+    detail::Device& device = context.device();
+    VKMESH_TRY(const detail::DrawPipelines* pipelines, device.draw_pipelines());
+    const std::string size = std::to_string(width) + " by " + std::to_string(height) + " pixels";
+    if (width == 0 || height == 0) return fail(ErrorCode::kUsage, "a picture of " + size + " has no pixels");
+    if (width > device.max_image_side || height > device.max_image_side)
+      return fail(ErrorCode::kUsage, "a picture of " + size + " is too large: " + device.info.name +
+                                         " draws at most " + std::to_string(device.max_image_side) +
+                                         " a side");
+
+    auto state = std::make_unique<State>(context);
+    state->width = width;
+    state->height = height;
+    // Transient: the samples never leave the render pass, and tiled devices need no memory for them.
+    constexpr VkImageUsageFlags kColor = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    constexpr VkImageUsageFlags kTransient = VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
+    VKMESH_TRY(state->samples,
+               detail::Image::create(context, width, height,
+                                     {detail::DrawPipelines::kColorFormat, detail::DrawPipelines::kSamples,
+                                      kColor | kTransient, VK_IMAGE_ASPECT_COLOR_BIT},
+                                     "colour samples"));
+    VKMESH_TRY(
+        state->depth,
+        detail::Image::create(context, width, height,
+                              {pipelines->depth_format(), detail::DrawPipelines::kSamples,
+                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | kTransient,
+                               VK_IMAGE_ASPECT_DEPTH_BIT},
+                              "depth samples"));
+    VKMESH_TRY(state->resolved,
+               detail::Image::create(context, width, height,
+                                     {detail::DrawPipelines::kColorFormat, VK_SAMPLE_COUNT_1_BIT,
+                                      kColor | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                      VK_IMAGE_ASPECT_COLOR_BIT},
+                                     "picture"));
+    const VkImageView views[] = {state->samples.view(), state->depth.view(), state->resolved.view()};
+    VkFramebufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    info.renderPass = pipelines->render_pass();
+    info.attachmentCount = 3;
+    info.pAttachments = views;
+    info.width = width;
+    info.height = height;
+    info.layers = 1;
+    VKMESH_VK(device.functions.vkCreateFramebuffer(device.handle, &info, nullptr, &state->framebuffer),
+              "making a frame buffer");
+    VKMESH_TRY(state->view, Buffer::create(context, sizeof(kernels::DrawView), BufferMemory::kDevice,
+                                           "parameters of the picture"));
+    VKMESH_TRY(state->pixels, Buffer::create(context, std::uint64_t{4} * width * height,
+                                             BufferMemory::kReadback, "pixels"));
+    return RenderTarget(std::move(state));
+  });
+}
+
+std::uint32_t RenderTarget::width() const {
+  return state_->width;
+}
+
+std::uint32_t RenderTarget::height() const {
+  return state_->height;
+}
+
+VkImage RenderTarget::image() const {
+  return state_->resolved.handle();
+}
+
+VkImageView RenderTarget::image_view() const {
+  return state_->resolved.view();
+}
+
+Result<Picture> RenderTarget::download() const {
+  VKMESH_TRY(Picture picture, Picture::create(state_->width, state_->height, {}));
+  VKMESH_CHECK(state_->pixels.download(std::as_writable_bytes(picture.pixels())));
+  // Alpha held coverage, which the samples have taken into account.
+  for (Color& pixel : picture.pixels()) pixel.a = 255;
+  return picture;
+}
+
+}  // namespace vkmesh

@@ -1,0 +1,29 @@
+// The objects behind a RenderTarget.
+#pragma once
+
+#include <cstdint>
+
+#include <vkmesh/engine/buffer.h>
+#include <vkmesh/engine/render_target.h>
+
+#include "render/image.h"
+
+namespace vkmesh {
+
+struct RenderTarget::State {
+  explicit State(Context& c) : context(c) {}
+  ~State();
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  Context& context;
+  std::uint32_t width = 0, height = 0;
+  detail::Image samples;   ///< Colour, before it is resolved.
+  detail::Image depth;
+  detail::Image resolved;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  Buffer view;    ///< A kernels::DrawView.
+  Buffer pixels;  ///< Four bytes a pixel, for the host.
+};
+
+}  // namespace vkmesh
