@@ -167,18 +167,20 @@ Result<void> Job::check_output() {
   if (options_.output.empty()) return {};
   VKMESH_TRY(write_options_, write_options_for(options_.output));
   write_options_.comment = "made by vkmesh " VKMESH_VERSION;
-  if (options_.output == "-") return {};
-  const fs::path path = options_.output;
+  return check_place(options_.output);
+}
+
+Result<void> check_place(const std::string& file) {
+  if (file == "-") return {};
+  const fs::path path = file;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code error;
-  if (fs::is_directory(path, error))
-    return fail(ErrorCode::kNotWritable, "is a directory", {options_.output, {}, {}});
+  if (fs::is_directory(path, error)) return fail(ErrorCode::kNotWritable, "is a directory", {file, {}, {}});
   if (!fs::is_directory(folder, error))
-    return fail(ErrorCode::kNotWritable, "the folder " + folder.string() + " does not exist",
-                {options_.output, {}, {}});
+    return fail(ErrorCode::kNotWritable, "the folder " + folder.string() + " does not exist", {file, {}, {}});
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     return fail(ErrorCode::kNotWritable, "the folder " + folder.string() + ": " + std::strerror(errno),
-                {options_.output, {}, {}});
+                {file, {}, {}});
   return {};
 }
 

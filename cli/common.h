@@ -121,6 +121,9 @@ class Job {
 /// Adds IN, and OUT when asked for, and the options that all subcommands have.
 void add_common_options(CLI::App& command, CommonOptions& options, bool has_input, bool has_output);
 
+/// Finds out whether a file can be written there at all. "-" can. Errors: kNotWritable.
+[[nodiscard]] Result<void> check_place(const std::string& file);
+
 /// For options: a number in [low, high], which "nan" is not; a number of decimal digits, at most `high`.
 [[nodiscard]] CLI::Validator number_between(double low, double high);
 [[nodiscard]] CLI::Validator count_up_to(std::uint64_t high);

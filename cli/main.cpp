@@ -33,12 +33,16 @@ int run(int argc, char** argv) {
       "operation,\n5 no such device, 6 out of memory, 7 output not writable, 130 interrupted.\n"
       "'vkmesh SUBCOMMAND --help' shows the options of a subcommand and an example.");
   Program program;
-  for (const auto add :
-       {add_info, add_convert, add_normals, add_curvature, add_smooth, add_simplify, add_devices})
+  for (const auto add : {add_info, add_convert, add_normals, add_curvature, add_smooth, add_simplify,
+#ifdef VKMESH_HAS_VULKAN
+                         add_render,
+#endif
+                         add_devices})
     add(app, program);
 
   // The parser would only say that a subcommand is required.
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr)
+  const auto is_first = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty())
     return fail_with(
         {ErrorCode::kUsage, std::string("there is no subcommand ") + argv[1] + " (see vkmesh --help)", {}},
         wants_json(argc, argv));

@@ -1,5 +1,5 @@
 // The whole way of a mesh: file, half-edges, compute passes on a Vulkan device, simplification on the host,
-// file.
+// files.
 //   main_job IN OUT-FOLDER [DEVICE]      DEVICE as in ContextOptions::device; default auto
 #include <chrono>
 #include <cstdio>
@@ -19,72 +19,68 @@ using namespace vkmesh;
 
 namespace {
 
-std::string grouped(std::size_t n) {
+using Clock = std::chrono::steady_clock;
+
+std::string grouped(std::size_t n, const char* of) {
   std::string text = std::to_string(n);
   for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
-  return text;
+  return text + " " + of;
 }
 
 void row(const char* step, const std::string& counts, double ms, const std::string& device) {
-  std::printf("%-12s %-56s %7.0f ms  %s\n", step, counts.c_str(), ms, device.c_str());
+  std::printf("%-12s %-46s %7.0f ms  %s\n", step, counts.c_str(), ms, device.c_str());
   std::fflush(stdout);
 }
 
-/// Milliseconds since the last call.
-double lap() {
-  static auto last = std::chrono::steady_clock::now();
-  const auto now = std::chrono::steady_clock::now();
-  return std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
+/// Milliseconds since `from`, which becomes now.
+double lap(Clock::time_point& from) {
+  const auto now = Clock::now();
+  return std::chrono::duration<double, std::milli>(now - std::exchange(from, now)).count();
 }
 
 Result<void> run(const std::filesystem::path& in, const std::filesystem::path& out,
                  const std::string& device) {
-  std::printf("%-12s %-56s %10s  %s\n", "step", "", "time", "on");
-  lap();
+  auto start = Clock::now(), from = start;
   VKMESH_TRY(MeshFile file, read_mesh(in));
   VKMESH_TRY(IndexedFaceSet mesh, to_indexed_face_set(std::move(file)));
-  row("read", grouped(mesh.points.size()) + " points, " + grouped(mesh.face_count()) + " faces", lap(),
-      "host");
+  const std::string points = grouped(mesh.points.size(), "points");
+  row("read", points + ", " + grouped(mesh.face_count(), "faces"), lap(from), "host");
 
   VKMESH_TRY(const Consolidated c, consolidate(mesh));
-  row("consolidate",
-      grouped(c.report.edges) + " edges, " + grouped(c.report.boundary_edges) + " on the boundary", lap(),
-      "host");
+  const std::string boundary = grouped(c.report.boundary_edges, "on the boundary");
+  row("consolidate", grouped(c.report.edges, "edges, ") + boundary, lap(from), "host");
 
   ContextOptions options;
   options.device = device;
   VKMESH_TRY(const auto context, Context::create(options));
   const std::string& name = context->info().name;
-  row("open", context->info().driver, lap(), name);
+  row("open", "the device", lap(from), name);
   VKMESH_TRY(DeviceMesh on_device, DeviceMesh::create(*context, c.mesh, mesh.points, {true, true, true}));
-  row("upload", grouped(context->allocated_bytes() >> 20) + " MiB on the device", lap(), name);
+  row("upload", grouped(context->allocated_bytes() >> 20, "MiB on the device"), lap(from), name);
 
   VKMESH_TRY(Recorder recorder, Recorder::create(*context));
-  const LaplacianSmoothingOptions smoothing{.lambda = 0.5f, .iterations = 10};
   recorder.begin_section("smooth");
-  VKMESH_CHECK(record_laplacian_smoothing(recorder, on_device, smoothing));
+  VKMESH_CHECK(record_laplacian_smoothing(recorder, on_device, {.lambda = 0.5f, .iterations = 10}));
   recorder.begin_section("normals");
   VKMESH_CHECK(record_vertex_normals(recorder, on_device));
   recorder.begin_section("curvature");
   VKMESH_CHECK(record_dihedral_angles(recorder, on_device));
   VKMESH_CHECK(recorder.submit_and_wait());
-  lap();
   for (const SectionTime& section : recorder.section_times())
-    row(section.name.c_str(),
-        grouped(mesh.points.size()) + " points" + (section.name == "smooth" ? ", 10 steps" : ""),
-        section.milliseconds, name);
+    row(section.name.c_str(), points + (section.name == "smooth" ? ", 10 steps" : ""), section.milliseconds,
+        name);
 
+  lap(from);
   VKMESH_TRY(mesh.points, on_device.download_positions());
   VKMESH_TRY(const std::vector<Vec3> normals, on_device.download_vertex_normals());
   VKMESH_TRY(const std::vector<float> angles, on_device.download_vertex_maxima());
-  row("download", grouped(mesh.points.size()) + " positions, normals and angles", lap(), name);
+  row("download", "positions, normals, angles", lap(from), name);
 
   DecimateOptions decimation;
   decimation.target_faces = c.mesh.face_count() / 10;
   VKMESH_TRY(const Decimated small, decimate(c.mesh, mesh.points, decimation));
   VKMESH_CHECK(validate(small.mesh));
-  row("simplify", grouped(small.mesh.face_count()) + " faces (" + name_of(small.stop) + "), validated", lap(),
-      "host");
+  row("simplify", grouped(small.mesh.face_count(), "faces; ") + name_of(small.stop), lap(from), "host");
 
   IndexedFaceSet simplified;
   simplified.points = small.positions;
@@ -101,7 +97,8 @@ Result<void> run(const std::filesystem::path& in, const std::filesystem::path& o
   std::filesystem::create_directories(out, ignored);
   VKMESH_CHECK(write_mesh(out / "smooth.ply", mesh, {}));
   VKMESH_CHECK(write_mesh(out / "simplified.ply", simplified, {}));
-  row("write", "smooth.ply, simplified.ply in " + out.string(), lap(), "host");
+  row("write", "smooth.ply, simplified.ply", lap(from), "host");
+  row("all of it", "", lap(start), "");
   return {};
 }
 

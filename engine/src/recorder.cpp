@@ -83,7 +83,8 @@ Result<void> Recorder::State::require_recording() const {
 
 void Recorder::State::memory_barrier(VkPipelineStageFlags stages, VkAccessFlags access) {
   const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWrites, access};
-  device().functions.vkCmdPipelineBarrier(commands, drew ? kStages | kDrawStages : kStages, stages, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+  device().functions.vkCmdPipelineBarrier(commands, drew ? kStages | kDrawStages : kStages, stages, 0, 1,
+                                          &barrier, 0, nullptr, 0, nullptr);
   read.clear();
   written.clear();
 }

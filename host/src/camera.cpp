@@ -116,8 +116,7 @@ Result<void> fit_depth(Camera& camera, std::span<const Vec3> points) {
   const double size = std::max(depth.high - depth.low, 1e-6 * distance);
   camera.far = std::max(depth.high, 0.0) + 0.01 * size;
   camera.near = depth.low - 0.01 * size;
-  if (camera.projection == Projection::kPerspective)
-    camera.near = std::max(camera.near, camera.far * 1e-4);
+  if (camera.projection == Projection::kPerspective) camera.near = std::max(camera.near, camera.far * 1e-4);
   return {};
 }
 

@@ -14,9 +14,7 @@ struct Lch {
 
 struct LinearRgb {
   double r, g, b;
-  [[nodiscard]] bool in_gamut() const {
-    return std::min({r, g, b}) >= 0.0 && std::max({r, g, b}) <= 1.0;
-  }
+  [[nodiscard]] bool in_gamut() const { return std::min({r, g, b}) >= 0.0 && std::max({r, g, b}) <= 1.0; }
 };
 
 LinearRgb to_linear_rgb(const Lch& c) {
@@ -52,14 +50,14 @@ Color to_srgb(Lch c) {
 }
 
 Color sequential(double t) {
-  // The hue turns from violet backwards to yellow; chroma swells a little in the middle.
-  return to_srgb(
-      {0.27 + 0.64 * t, 0.105 + 0.065 * t + 0.03 * std::sin(std::numbers::pi * t), 312.0 - 204.0 * t});
+  // The hue turns from violet backwards to yellow; the chroma stays within what sRGB has on the way, least at
+  // blue-green, so that nothing is clipped and no step shows.
+  return to_srgb({0.27 + 0.64 * t, 0.094 + 0.19 * (t - 0.4) * (t - 0.4), 300.0 - 192.0 * t});
 }
 
 Color diverging(double t) {
   const double side = 2.0 * t - 1.0, away = std::abs(side);
-  return to_srgb({0.96 - 0.48 * away, 0.19 * std::pow(away, 0.8), side < 0 ? 256.0 : 30.0});
+  return to_srgb({0.96 - 0.48 * away, 0.15 * std::pow(away, 0.8), side < 0 ? 256.0 : 30.0});
 }
 
 Color categorical(std::size_t i) {

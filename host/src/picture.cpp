@@ -1,12 +1,11 @@
-#include <vkmesh/picture.h>
-
-#include <png.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cstring>
 
+#include <png.h>
 #include <stb/stb_easy_font.h>
+
+#include <vkmesh/picture.h>
 
 #include "catching.h"
 #include "io/bytes.h"
@@ -84,8 +83,8 @@ void draw_text(Picture& picture, std::int64_t x, std::int64_t y, std::string_vie
   std::string line = printable(text);
   // Four corners of 16 bytes for each stroke; no character has more than 13 strokes.
   std::vector<std::byte> strokes(line.size() * 16 * 64);
-  const int count = stb_easy_font_print(0.0f, 0.0f, line.data(), nullptr, strokes.data(),
-                                        static_cast<int>(strokes.size()));
+  const int count =
+      stb_easy_font_print(0.0f, 0.0f, line.data(), nullptr, strokes.data(), static_cast<int>(strokes.size()));
   const auto corner = [&](int stroke, int i) {
     float xy[2];
     std::memcpy(xy, strokes.data() + (std::size_t{64} * static_cast<std::size_t>(stroke)) + 16 * i,
@@ -118,7 +117,8 @@ std::string text_that_fits(std::string_view text, std::int64_t width, std::uint3
   return {};
 }
 
-// The simplified interface of libpng is used: it returns its errors, where the full one jumps over C++ frames.
+// The simplified interface of libpng is used: it returns its errors, where the full one jumps over C++
+// frames.
 Result<std::vector<std::byte>> encode_png(const Picture& picture) {
   return detail::catching([&]() -> Result<std::vector<std::byte>> {
     if (picture.pixels().empty()) return fail(ErrorCode::kUsage, "a picture without pixels");

@@ -87,9 +87,8 @@ class PointTree {
       if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
     const std::size_t middle = begin + (end - begin) / 2;
     const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-      return points_[a][axis] < points_[b][axis];
-    });
+    std::nth_element(at(begin), at(middle), at(end),
+                     [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
     axes_[middle] = static_cast<std::uint8_t>(axis);
     build(begin, middle);
     build(middle + 1, end);
@@ -146,7 +145,8 @@ Result<std::vector<SurfaceEdge>> surface_edges(const IndexedFaceSet& mesh) {
       }
     };
     std::vector<std::uint32_t> starts(mesh.points.size() + 1, 0);
-    for_each_side([&](std::uint32_t from, std::uint32_t to, std::uint32_t) { ++starts[std::min(from, to) + 1]; });
+    for_each_side(
+        [&](std::uint32_t from, std::uint32_t to, std::uint32_t) { ++starts[std::min(from, to) + 1]; });
     std::partial_sum(starts.begin(), starts.end(), starts.begin());
     std::vector<Side> sides(starts.back());
     std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
@@ -208,7 +208,8 @@ Result<std::vector<float>> mean_curvatures(const IndexedFaceSet& mesh, std::span
     std::vector<double> area(mesh.points.size(), 0.0), curvature(mesh.points.size(), 0.0);
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
       const auto corners = mesh.face(f);
-      const double share = length(newell(mesh, f)) / 2.0 / static_cast<double>(std::max<std::size_t>(corners.size(), 1));
+      const double share =
+          length(newell(mesh, f)) / 2.0 / static_cast<double>(std::max<std::size_t>(corners.size(), 1));
       for (const std::uint32_t c : corners) area[c] += share;
     }
     for (std::size_t e = 0; e < edges.size(); ++e) {

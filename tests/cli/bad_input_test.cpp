@@ -37,8 +37,8 @@ std::vector<Case> cases() {
   stl += std::string("\xff\xff\xff\x7f", 4);
   stl += std::string(50, '\0');
   return {
-      {"truncated.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n", 3, ":", "end"},
-      {"truncated.ply", binary_head + std::string(20, '\0'), 3, ":", "end"},
+      {"truncated.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n", 3, ":2:", "promises 4 vertices"},
+      {"truncated.ply", binary_head + std::string(20, '\0'), 3, ":3:", "promises 3"},
       {"half_a_header.ply", "ply\nformat ascii 1.0\nelement ver", 3, ":", ""},
       {"empty.ply", "", 3, ":", "empty"},
       {"empty.obj", "", 3, ":", "empty"},
@@ -52,14 +52,14 @@ std::vector<Case> cases() {
            "3 0 1 2\n",
        3, ":", "end"},
       {"range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", 3, ":6:", "3"},
-      {"negative.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", 3, ":6:", ""},
+      {"negative.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", 3, ":6:", "-1"},
       {"range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", 3, ":4:", "4"},
       {"before_first.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -4\n", 3, ":4:", "-4"},
       {"zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", 3, ":4:", "0"},
       {"range.ply", kPlyHead + kPlyFaces + kPlyPoints + "3 0 1 7\n", 3, ":13:", "7"},
       {"nan.off", "OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n", 3, ":4:", "finite"},
       {"infinite.obj", "v 0 0 0\nv 1 inf 0\nv 0 1 0\nf 1 2 3\n", 3, ":2:", "finite"},
-      {"overflow.ply", kPlyHead + kPlyFaces + "0 0 0\n1e99 0 0\n0 1 0\n3 0 1 2\n", 3, ":11:", "finite"},
+      {"overflow.ply", kPlyHead + kPlyFaces + "0 0 0\n1e99 0 0\n0 1 0\n3 0 1 2\n", 3, ":11:", "1e99"},
       {"promises.ply",
        "ply\nformat ascii 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float y\nproperty "
        "float z\nend_header\n0 0 0\n",
@@ -73,7 +73,7 @@ std::vector<Case> cases() {
       {"one_corner.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n1 0\n", 4, "", "degenerate"},
       {"repeated.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n", 4, "", "degenerate"},
       {"repeated_in_quad.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 1\n", 4, "", "degenerate"},
-      {"fin.off", kFinOff, 4, "", "non-manifold"},
+      {"fin.off", kFinOff, 4, "", "three or more faces"},
       {"bow_tie.off", off_of(bow_tie()), 4, "", "fans"},
       {"mobius.off", off_of(mobius(8)), 4, "", "orient"},
   };

@@ -107,9 +107,9 @@ TEST_CASE("surface distance agrees with a search over all triangles", "[distance
   IndexedFaceSet b = icosphere(1);
   test::jitter(b, 0.3f, 5);
   // Triangles without area: a repeated point and three points on a line.
-  b.points.insert(b.points.end(), {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}});
+  b.points.insert(b.points.end(), {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {0, 3, 0}});
   const auto extra = static_cast<std::uint32_t>(b.points.size());
-  b.corners.insert(b.corners.end(), {extra - 3, extra - 2, extra - 1, extra - 1, extra - 1, extra - 1});
+  b.corners.insert(b.corners.end(), {extra - 4, extra - 3, extra - 2, extra - 1, extra - 1, extra - 1});
   std::mt19937 random(9);
   const auto coordinate = [&] { return static_cast<float>(random() % 8192) / 1024.0f - 4.0f; };
   constexpr float kTiny = 1.0f / 1048576.0f;

@@ -53,18 +53,19 @@ Result<void> put_camera(kernels::DrawView& view, const Camera& camera, std::uint
   const bool perspective = camera.projection == Projection::kPerspective;
   const double n = camera.near, f = camera.far;
   if (!(n < f) || !std::isfinite(n) || !std::isfinite(f) || (perspective && !(n > 0.0)))
-    return fail(ErrorCode::kUsage, "a camera sees from `near` to a larger `far`, and with perspective from above 0");
+    return fail(ErrorCode::kUsage,
+                "a camera sees from `near` to a larger `far`, and with perspective from above 0");
   if (perspective ? !(camera.field_of_view > 0.0 && camera.field_of_view < 180.0)
                   : !(camera.visible_height > 0.0))
-    return fail(ErrorCode::kUsage, "a camera needs a field of view between 0 and 180 degrees, or a visible height");
+    return fail(ErrorCode::kUsage,
+                "a camera needs a field of view between 0 and 180 degrees, or a visible height");
 
   // Positions are taken relative to the target as it reads in single precision: nothing is lost by that.
   const DVec3 origin = DVec3(Vec3(camera.target));
   const DVec3 eye = camera.eye - origin;
   const double aspect = static_cast<double>(width) / static_cast<double>(height);
-  const double scale_y =
-      perspective ? 1.0 / std::tan(camera.field_of_view * 3.14159265358979323846 / 360.0)
-                  : 2.0 / camera.visible_height;
+  const double scale_y = perspective ? 1.0 / std::tan(camera.field_of_view * 3.14159265358979323846 / 360.0)
+                                     : 2.0 / camera.visible_height;
   // Rows of the matrix that takes positions to clip space: y points down there, depth runs from 1 to 0.
   struct Row {
     DVec3 xyz;
@@ -188,7 +189,9 @@ Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const
                            (geometry.values == nullptr || geometry.element == DrawElement::kPoint) &&
                            geometry.points <= kMaxIndexedPoints;
     detail::DrawPipelineKey key;
-    key.shaders = as_points ? DrawShaders::kPoints : by_points ? DrawShaders::kIndexed : DrawShaders::kCorners;
+    key.shaders = as_points   ? DrawShaders::kPoints
+                  : by_points ? DrawShaders::kIndexed
+                              : DrawShaders::kCorners;
     key.color_source = style.colors == DrawColors::kNormal   ? VKMESH_COLOR_NORMAL
                        : style.colors == DrawColors::kValue  ? VKMESH_COLOR_VALUE
                        : style.colors == DrawColors::kDirect ? VKMESH_COLOR_DIRECT
@@ -225,8 +228,8 @@ Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const
       begin.clearValueCount = 2;
       begin.pClearValues = clear;
       vk.vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
-      const VkViewport viewport{
-          0.0f, 0.0f, static_cast<float>(to.width), static_cast<float>(to.height), 0.0f, 1.0f};
+      const VkViewport viewport{0.0f, 0.0f, static_cast<float>(to.width), static_cast<float>(to.height),
+                                0.0f, 1.0f};
       vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
       vk.vkCmdSetScissor(cmd, 0, 1, &begin.renderArea);
 

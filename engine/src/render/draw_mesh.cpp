@@ -22,8 +22,8 @@ Result<void> require_finite(std::span<const Vec3> points) {
 
 Result<void> require_size(std::size_t size, std::size_t elements, const char* what) {
   if (size == 0 || size == elements) return {};
-  return fail(ErrorCode::kUsage, std::to_string(size) + " " + what + " for " + std::to_string(elements) +
-                                     " elements");
+  return fail(ErrorCode::kUsage,
+              std::to_string(size) + " " + what + " for " + std::to_string(elements) + " elements");
 }
 
 template <class T>
@@ -77,7 +77,8 @@ Result<DrawMesh> DrawMesh::create(Context& context, const IndexedFaceSet& triang
 
 Result<DrawMesh> DrawMesh::create(Context& context, const PolygonSoup& soup, const DrawMeshData& data) {
   if (!soup.face_offsets.empty() || soup.corners.size() % 3 != 0)
-    return fail(ErrorCode::kUnsuitable, "triangles can be drawn only: weld and triangulate the polygons first");
+    return fail(ErrorCode::kUnsuitable,
+                "triangles can be drawn only: weld and triangulate the polygons first");
   auto mesh = create(context, soup.corners, {}, data);
   if (mesh) mesh->triangles_ = mesh->points_ / 3;
   return mesh;

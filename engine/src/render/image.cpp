@@ -51,9 +51,8 @@ Result<Image> Image::create(Context& context, std::uint32_t width, std::uint32_t
   const bool fits = needs.size <= device.max_allocation && held <= device.info.memory &&
                     needs.size <= device.info.memory - held;
   const VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size, *type};
-  const VkResult allocated = fits
-                                 ? vk.vkAllocateMemory(device.handle, &allocation, nullptr, &image.memory_)
-                                 : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  const VkResult allocated = fits ? vk.vkAllocateMemory(device.handle, &allocation, nullptr, &image.memory_)
+                                  : VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (allocated == VK_ERROR_OUT_OF_DEVICE_MEMORY || allocated == VK_ERROR_OUT_OF_HOST_MEMORY)
     return fail(ErrorCode::kOutOfMemory, "device memory ran out: image '" + name + "' of " +
                                              std::to_string(width) + " by " + std::to_string(height) +

@@ -44,13 +44,12 @@ Result<RenderTarget> RenderTarget::create(Context& context, std::uint32_t width,
                                      {detail::DrawPipelines::kColorFormat, detail::DrawPipelines::kSamples,
                                       kColor | kTransient, VK_IMAGE_ASPECT_COLOR_BIT},
                                      "colour samples"));
-    VKMESH_TRY(
-        state->depth,
-        detail::Image::create(context, width, height,
-                              {pipelines->depth_format(), detail::DrawPipelines::kSamples,
-                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | kTransient,
-                               VK_IMAGE_ASPECT_DEPTH_BIT},
-                              "depth samples"));
+    VKMESH_TRY(state->depth,
+               detail::Image::create(
+                   context, width, height,
+                   {pipelines->depth_format(), detail::DrawPipelines::kSamples,
+                    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | kTransient, VK_IMAGE_ASPECT_DEPTH_BIT},
+                   "depth samples"));
     VKMESH_TRY(state->resolved,
                detail::Image::create(context, width, height,
                                      {detail::DrawPipelines::kColorFormat, VK_SAMPLE_COUNT_1_BIT,
@@ -70,8 +69,8 @@ Result<RenderTarget> RenderTarget::create(Context& context, std::uint32_t width,
               "making a frame buffer");
     VKMESH_TRY(state->view, Buffer::create(context, sizeof(kernels::DrawView), BufferMemory::kDevice,
                                            "parameters of the picture"));
-    VKMESH_TRY(state->pixels, Buffer::create(context, std::uint64_t{4} * width * height,
-                                             BufferMemory::kReadback, "pixels"));
+    VKMESH_TRY(state->pixels,
+               Buffer::create(context, std::uint64_t{4} * width * height, BufferMemory::kReadback, "pixels"));
     return RenderTarget(std::move(state));
   });
 }

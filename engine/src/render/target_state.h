@@ -18,7 +18,7 @@ struct RenderTarget::State {
 
   Context& context;
   std::uint32_t width = 0, height = 0;
-  detail::Image samples;   ///< Colour, before it is resolved.
+  detail::Image samples;  ///< Colour, before it is resolved.
   detail::Image depth;
   detail::Image resolved;
   VkFramebuffer framebuffer = VK_NULL_HANDLE;

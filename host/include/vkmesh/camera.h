@@ -17,9 +17,9 @@ struct Camera {
   DVec3 target{0, 0, 0};
   DVec3 up{0, 1, 0};
   Projection projection = Projection::kPerspective;
-  double field_of_view = 30;   ///< Degrees, from the lower to the upper edge of the picture. Perspective.
-  double visible_height = 1;   ///< From the lower to the upper edge of the picture. Orthographic.
-  double near = 0, far = 0;    ///< Distances along the view; nothing outside of them is seen.
+  double field_of_view = 30;  ///< Degrees, from the lower to the upper edge of the picture. Perspective.
+  double visible_height = 1;  ///< From the lower to the upper edge of the picture. Orthographic.
+  double near = 0, far = 0;   ///< Distances along the view; nothing outside of them is seen.
 };
 
 /// The unit vectors of a camera.

@@ -33,9 +33,7 @@ class Picture {
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }
   /// O(1). x < width(), y < height().
-  [[nodiscard]] Color& at(std::uint32_t x, std::uint32_t y) {
-    return pixels_[std::size_t{y} * width_ + x];
-  }
+  [[nodiscard]] Color& at(std::uint32_t x, std::uint32_t y) { return pixels_[std::size_t{y} * width_ + x]; }
   [[nodiscard]] const Color& at(std::uint32_t x, std::uint32_t y) const {
     return pixels_[std::size_t{y} * width_ + x];
   }

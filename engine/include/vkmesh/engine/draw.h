@@ -42,16 +42,16 @@ struct DrawStyle {
   DrawMode mode = DrawMode::kShaded;
   DrawColors colors = DrawColors::kPlain;
   ColorMap map = ColorMap::kSequential;
-  ValueRange range;                         ///< Values at its ends get the first and last colour of the map.
-  Color plain{204, 205, 210};               ///< The surface without other colours.
+  ValueRange range;            ///< Values at its ends get the first and last colour of the map.
+  Color plain{204, 205, 210};  ///< The surface without other colours.
   Color background{255, 255, 255};
-  Color none{150, 150, 150};                ///< Elements whose value is kNoValue.
-  bool show_flipped = false;                ///< Paints back faces in `flipped`.
+  Color none{150, 150, 150};  ///< Elements whose value is kNoValue.
+  bool show_flipped = false;  ///< Paints back faces in `flipped`.
   Color flipped{230, 0, 160};
-  Color edge{40, 44, 52};                   ///< Of the polygons' edges.
-  float edge_width = 1.0f;                  ///< Pixels.
-  float point_size = 3.0f;                  ///< Pixels across a dot.
-  float splat_scale = 0.8f;                 ///< Radius of a splat as a multiple of the spacing around its point.
+  Color edge{40, 44, 52};    ///< Of the polygons' edges.
+  float edge_width = 1.0f;   ///< Pixels.
+  float point_size = 3.0f;   ///< Pixels across a dot.
+  float splat_scale = 0.8f;  ///< Radius of a splat as a multiple of the spacing around its point.
 };
 
 /// The value of an element that has none.
@@ -86,11 +86,11 @@ struct DrawGeometry {
 [[nodiscard]] Result<DrawGeometry> geometry_of(const DeviceMesh& mesh);
 
 /// Records a picture of the geometry: clears the target to the background, draws, and copies the picture to
-/// where RenderTarget::download() finds it. All of it must live until the work has run. Face sets are drawn through
-/// vertex and index buffers, each point once, where light and colours are the points' own; else, as soups
-/// are, triangle by triangle. Errors: kUsage for a camera without direction or depth range, values that are not
-/// there, or splats without spacing; kUnsuitable for more elements than a draw call counts; kNoDevice where the
-/// queue does not draw; kOutOfMemory.
+/// where RenderTarget::download() finds it. All of it must live until the work has run. Face sets are drawn
+/// through vertex and index buffers, each point once, where light and colours are the points' own; else, as
+/// soups are, triangle by triangle. Errors: kUsage for a camera without direction or depth range, values that
+/// are not there, or splats without spacing; kUnsuitable for more elements than a draw call counts; kNoDevice
+/// where the queue does not draw; kOutOfMemory.
 [[nodiscard]] Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const Camera& camera,
                                        const DrawStyle& style, RenderTarget& target);
 [[nodiscard]] Result<void> record_draw(Recorder& recorder, const DeviceMesh& mesh, const Camera& camera,
@@ -98,12 +98,12 @@ struct DrawGeometry {
 
 /// What a DrawMesh holds beside the triangles. Spans may be empty.
 struct DrawMeshData {
-  std::span<const Vec3> normals;          ///< A point each.
-  std::span<const float> values;          ///< An element each. Values that are not finite become kNoValue.
-  std::span<const Color> colors;          ///< An element each, instead of values.
+  std::span<const Vec3> normals;  ///< A point each.
+  std::span<const float> values;  ///< An element each. Values that are not finite become kNoValue.
+  std::span<const Color> colors;  ///< An element each, instead of values.
   DrawElement element = DrawElement::kPoint;
   std::span<const std::uint32_t> source_face;  ///< Triangulated::source_face; for edges of polygons.
-  std::span<const float> spacing;         ///< A point each.
+  std::span<const float> spacing;              ///< A point each.
   struct Edges {
     std::span<const std::uint32_t> ends;  ///< 2 points an edge.
     Color color;
@@ -116,7 +116,8 @@ struct DrawMeshData {
 class DrawMesh {
  public:
   /// Errors: kUnsuitable for a position that is not finite (the first is named) or polygons that are no
-  /// triangles; kUsage for corners that name no point, or data of another size; kOutOfMemory; kNoDevice. O(n).
+  /// triangles; kUsage for corners that name no point, or data of another size; kOutOfMemory; kNoDevice.
+  /// O(n).
   [[nodiscard]] static Result<DrawMesh> create(Context& context, const IndexedFaceSet& triangles,
                                                const DrawMeshData& data = {});
   /// The triangles of a soup, without corners: there is a point for each corner of a triangle.

@@ -73,13 +73,13 @@ class Recorder {
   [[nodiscard]] Result<void> copy(const Buffer& from, const Buffer& to, std::uint64_t bytes,
                                   std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
 
-  /// Writes `data` to the start of a buffer; the bytes travel in the command buffer. Errors: kUsage for a size
-  /// that is no multiple of four, above 65536 or above the buffer's, or after submit_and_wait().
+  /// Writes `data` to the start of a buffer; the bytes travel in the command buffer. Errors: kUsage for a
+  /// size that is no multiple of four, above 65536 or above the buffer's, or after submit_and_wait().
   [[nodiscard]] Result<void> update(const Buffer& to, std::span<const std::byte> data);
 
   /// Calls `commands` with the command buffer, to record drawing that reads and writes these buffers: as
-  /// vertices, indices and in shaders, or by transfers. A render pass must begin and end inside. Errors: kNoDevice
-  /// where the queue does not draw; kUsage after submit_and_wait().
+  /// vertices, indices and in shaders, or by transfers. A render pass must begin and end inside. Errors:
+  /// kNoDevice where the queue does not draw; kUsage after submit_and_wait().
   [[nodiscard]] Result<void> graphics(const std::function<void(VkCommandBuffer)>& commands,
                                       std::span<const Buffer* const> reads,
                                       std::span<const Buffer* const> writes);
