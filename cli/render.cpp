@@ -28,8 +28,11 @@ namespace {
 constexpr Color kBoundaryColor{240, 130, 0};
 constexpr Color kNonManifoldColor{220, 20, 30};
 constexpr Color kCreaseColor{20, 70, 160};
-/// Share of the values that lies below and above the range of the colours.
-constexpr double kRobustShare = 0.02;
+/// Percent of the values that lie below and above the range of the colours. Curvature, a second derivative,
+/// has more outliers than others.
+int percent_left_out(const std::string& color) {
+  return color == "curvature" ? 5 : 2;
+}
 
 struct RenderOptions {
   std::vector<std::string> files;  // the inputs, then the picture
@@ -279,11 +282,11 @@ Result<void> measure(Subject& subject, const IndexedFaceSet& polygons, const Ren
     show_edges(subject, edges, chosen, kCreaseColor, 2.0f, "crease edge", "crease_edges");
     subject.legend.swatches.back().text += " sharper than " + brief(options.crease_angle) + " degrees";
   }
-  if (options.show_boundary) {
+  if (options.show_boundary && polygons.face_count() > 0) {
     for (std::size_t e = 0; e < edges.size(); ++e) chosen[e] = edges[e].faces == 1;
     show_edges(subject, edges, chosen, kBoundaryColor, 3.0f, "boundary edge", "boundary_edges");
   }
-  if (options.show_non_manifold) {
+  if (options.show_non_manifold && polygons.face_count() > 0) {
     for (std::size_t e = 0; e < edges.size(); ++e) chosen[e] = edges[e].faces > 2;
     show_edges(subject, edges, chosen, kNonManifoldColor, 4.0f, "non-manifold edge", "non_manifold_edges");
   }
@@ -328,7 +331,7 @@ Result<Subject> prepare(Job& job, MeshFile file, Subject subject, const RenderOp
       VKMESH_CHECK(measure(subject, mesh, options));
     }
   }
-  subject.mode = mode_of(subject.style, subject.faces > 0);
+  subject.mode = mode_of(subject.style, subject.faces > 0 || subject.points == 0);
   const bool as_points = subject.mode == DrawMode::kPoints || subject.mode == DrawMode::kSplats;
   if (!as_points && subject.faces == 0 && subject.points > 0)
     job.note(subject.file + ": has no faces, of which --style " + subject.style +
@@ -369,7 +372,7 @@ void set_ranges(std::vector<Subject>& subjects, const std::optional<ValueRange>&
       pooled[s.color].insert(pooled[s.color].end(), s.values.begin(), s.values.end());
   std::map<std::string, std::pair<ValueRange, bool>> ranges;
   for (const auto& [color, values] : pooled) {
-    ValueRange range = robust_range(values, kRobustShare);
+    ValueRange range = robust_range(values, percent_left_out(color) / 100.0);
     bool robust = true;
     if (asked || color == "quality") {
       range = asked.value_or(ValueRange{0, 1});
@@ -383,7 +386,8 @@ void set_ranges(std::vector<Subject>& subjects, const std::optional<ValueRange>&
     ranges[color] = {range, robust};
   }
   for (Subject& s : subjects) {
-    if (flipped_shown) s.legend.swatches.push_back({DrawStyle{}.flipped, "faces seen from behind"});
+    if (flipped_shown && s.faces > 0)
+      s.legend.swatches.push_back({DrawStyle{}.flipped, "faces seen from behind"});
     if (s.colors != DrawColors::kValue) continue;
     if (s.color == "component") {
       s.legend.range = {0, 255};
@@ -393,7 +397,10 @@ void set_ranges(std::vector<Subject>& subjects, const std::optional<ValueRange>&
     const auto& [range, robust] = ranges[s.color];
     s.legend.range = range;
     s.legend.map = range.low < 0 && range.high > 0 ? ColorMap::kDiverging : ColorMap::kSequential;
-    if (robust && !s.legend.title.empty()) s.legend.title += " (percentiles 2-98)";
+    if (robust && !s.legend.title.empty()) {
+      const int out = percent_left_out(s.color);
+      s.legend.title += " (percentiles " + std::to_string(out) + "-" + std::to_string(100 - out) + ")";
+    }
     s.json["range"] = {range.low, range.high};
     if (s.values.empty()) s.legend.title.clear();
   }

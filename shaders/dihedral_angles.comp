@@ -8,9 +8,11 @@ VKMESH_PUSH_CONSTANTS(DihedralAnglesParams);
 void main() {
   VKMESH_THREAD_INDEX(h);
   const uint t = p.twins.at[h];
-  if (t == 0xffffffffu) p.angles.at[h] = 0.0;
-  if (t == 0xffffffffu || t < h) return;
-  const float angle = angle_between(load3(p.normals, h / 3), load3(p.normals, t / 3));
+  const bool boundary = t == 0xffffffffu;
+  const float angle = angle_between(load3(p.normals, h / 3), load3(p.normals, (boundary ? h : t) / 3));
+  VKMESH_SURPLUS_THREADS_LEAVE;
+  if (boundary) p.angles.at[h] = 0.0;
+  if (boundary || t < h) return;
   p.angles.at[h] = angle;
   p.angles.at[t] = angle;
 }

@@ -25,7 +25,7 @@ vec3 relative(vec3 position) { return position - p.view.origin.xyz; }
 vec4 to_clip(vec3 at) { return p.view.clip_from_origin * vec4(at, 1.0); }
 
 /// From a point towards the eye, a unit vector.
-vec3 towards_eye(vec3 at) { return p.view.eye.w == 0.0 ? p.view.back.xyz : normalize(p.view.eye.xyz - at); }
+vec3 towards_eye(vec3 at) { return p.view.perspective == 0u ? p.view.back.xyz : normalize(p.view.eye.xyz - at); }
 
 /// The element of a corner whose value colours it.
 uint element_of(uint point, uint corner) {

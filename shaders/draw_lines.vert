@@ -16,7 +16,7 @@ void main() {
   if (a.w < nearest) a = mix(b, a, (b.w - nearest) / (b.w - a.w));
   if (b.w < nearest) b = mix(a, b, (a.w - nearest) / (a.w - b.w));
 
-  vec2 half_size = vec2(p.view.right.w, p.view.up.w);
+  vec2 half_size = vec2(p.view.half_width, p.view.half_height);
   vec2 along = (b.xy / b.w - a.xy / a.w) * half_size;
   float pixels = length(along);
   along = pixels > 1e-6 ? along / pixels : vec2(1.0, 0.0);
@@ -28,5 +28,5 @@ void main() {
   vec2 offset = (side * left + along * (at_end ? 1.0 : -1.0)) * 0.5 * p.width;
   gl_Position = end;
   gl_Position.xy += offset / half_size * end.w;
-  gl_Position.z += p.view.origin.w;
+  gl_Position.z += p.view.line_bias;
 }

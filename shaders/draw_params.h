@@ -51,18 +51,19 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Dr
 #else
 struct DrawView {
 #endif
-  // Colours are linear, as light adds up, unless said otherwise.
+  // Of vectors, xyz alone count: Mesa 22.3's llvmpipe reads x for w where a shader loads both xyz and w. Colours are
+  // linear, as light adds up, unless said otherwise.
   VKMESH_MAT4(clip_from_origin);  ///< Column by column; of positions relative to `origin`.
-  VKMESH_VEC4(origin);            ///< xyz; w: what brings lines nearer, added to z in clip space
-  VKMESH_VEC4(eye);               ///< xyz relative to `origin`; w 1: perspective, 0: orthographic
-  VKMESH_VEC4(right);             ///< xyz; w: half the picture's width in pixels
-  VKMESH_VEC4(up);                ///< xyz; w: half its height in pixels
-  VKMESH_VEC4(back);              ///< xyz: against the view; w: depth range of the mesh
-  VKMESH_VEC4(lamp);              ///< xyz: towards the light, a unit vector
+  VKMESH_VEC4(origin);
+  VKMESH_VEC4(eye);               ///< relative to `origin`
+  VKMESH_VEC4(right);             ///< unit vectors
+  VKMESH_VEC4(up);
+  VKMESH_VEC4(back);              ///< against the view
+  VKMESH_VEC4(lamp);              ///< towards the light
   VKMESH_VEC4(plain);             ///< of VKMESH_COLOR_PLAIN
   VKMESH_VEC4(none);              ///< of elements without a value
   VKMESH_VEC4(flipped);           ///< of back faces
-  VKMESH_VEC4(edge);              ///< sRGB of the triangles' edges; w: their width in pixels
+  VKMESH_VEC4(edge);              ///< of the triangles' edges: sRGB
   VKMESH_FLOAT value_low;
   VKMESH_FLOAT value_scale;       ///< 1 / (high - low)
   VKMESH_UINT element;
@@ -70,7 +71,13 @@ struct DrawView {
   VKMESH_FLOAT point_radius;      ///< pixels
   VKMESH_FLOAT splat_scale;       ///< times the spacing of the points is a splat's radius
   VKMESH_FLOAT nearest;           ///< depth along the view of the nearest point
-  VKMESH_UINT unused;
+  VKMESH_FLOAT depth;             ///< from there to the farthest
+  VKMESH_FLOAT half_width;        ///< of the picture, pixels
+  VKMESH_FLOAT half_height;
+  VKMESH_FLOAT edge_width;        ///< pixels
+  VKMESH_FLOAT line_bias;         ///< what brings lines nearer: added to z in clip space
+  VKMESH_UINT perspective;        ///< 1, or 0 for a parallel projection
+  VKMESH_UINT unused[3];
   VKMESH_TABLE(table, 256);       ///< the colour table
 };
 
@@ -94,7 +101,7 @@ struct DrawParams {
 } p;
 #else
 };
-static_assert(sizeof(DrawParams) == 64 && sizeof(DrawView) == 64 + 10 * 16 + 8 * 4 + 4096);
+static_assert(sizeof(DrawParams) == 64 && sizeof(DrawView) == 64 + 10 * 16 + 16 * 4 + 4096);
 }  // namespace vkmesh::kernels
 #endif
 

@@ -23,7 +23,7 @@ void main() {
     color = vec4(shown(n, value, direct, dot(n, view) < 0.0 ? -n : n, view), covered);
   } else {
     float depth = dot(at - p.view.eye.xyz, -p.view.back.xyz);
-    float behind = clamp((depth - p.view.nearest) / max(p.view.back.w, 1e-30), 0.0, 1.0);
+    float behind = clamp((depth - p.view.nearest) / max(p.view.depth, 1e-30), 0.0, 1.0);
     color = vec4(to_srgb(surface_color(value, direct) * mix(1.0, 0.25, behind)), covered);
   }
 }

@@ -28,11 +28,11 @@ void main() {
     vec3 other = cross(axis, tangent);
     // No disc gets smaller than a point would be.
     vec3 row = vec3(p.view.clip_from_origin[0].y, p.view.clip_from_origin[1].y, p.view.clip_from_origin[2].y);
-    float pixels = p.view.up.w * length(row) * radius / max(center.w, 1e-30);
+    float pixels = p.view.half_height * length(row) * radius / max(center.w, 1e-30);
     radius *= max(1.0, 0.5 / max(pixels, 1e-6));
     gl_Position = to_clip(at + radius * (disc.x * tangent + disc.y * other));
   } else {
     gl_Position = center;
-    gl_Position.xy += disc * p.view.point_radius / vec2(p.view.right.w, p.view.up.w) * center.w;
+    gl_Position.xy += disc * p.view.point_radius / vec2(p.view.half_width, p.view.half_height) * center.w;
   }
 }

@@ -27,7 +27,7 @@ void main() {
   if (kEdges != VKMESH_NO_EDGES) {
     vec3 pixels = across / max(fwidth(across), vec3(1e-12));
     float distance = min(pixels.x, min(pixels.y, pixels.z));
-    float covered = clamp(0.5 * p.view.edge.w + 0.5 - distance, 0.0, 1.0);
+    float covered = clamp(0.5 * p.view.edge_width + 0.5 - distance, 0.0, 1.0);
     if (kEdges == VKMESH_EDGES_ONLY) {
       if (covered <= 0.0) discard;
       color.a = covered;

@@ -10,21 +10,23 @@ layout(local_size_x = 128) in;
 #include "params.h"
 #include "arithmetic.glsl"
 
-// Declares the push constants `p` and the index `i` of this thread, and ends the surplus threads of the last group.
+// Declares the push constants `p`.
 #define VKMESH_PUSH_CONSTANTS(Params) \
   layout(push_constant, std430) uniform PushConstants { Params p; }
 
-#define VKMESH_THREAD_INDEX(i)                   \
-  uint i = gl_GlobalInvocationID.x;              \
-  if (i >= p.count) return;                      \
-  i += p.first
+// The surplus threads of the last group compute the last element again and leave before they store it. (Leaving at once
+// would put all that follows under a mask, and loads under a mask cost software devices twice as much.)
+#define VKMESH_THREAD_INDEX(i) const uint i = p.first + min(gl_GlobalInvocationID.x, p.count - 1u)
+#define VKMESH_SURPLUS_THREADS_LEAVE \
+  if (gl_GlobalInvocationID.x >= p.count) return
+
+// For the same reason gathers load the first eight elements of a list, which is all that most vertices have, without a
+// condition; past the end of the list they load an element again, and drop it.
+#define VKMESH_UNMASKED 8u
+#define VKMESH_CLAMPED(n, end) min(n, max(end, 1u) - 1u)
 
 vec3 load3(Floats values, uint i) { return vec3(values.at[3 * i], values.at[3 * i + 1], values.at[3 * i + 2]); }
 
-void store3(Floats values, uint i, vec3 v) {
-  values.at[3 * i] = v.x;
-  values.at[3 * i + 1] = v.y;
-  values.at[3 * i + 2] = v.z;
-}
+void store3(Floats values, uint i, vec3 v) { values.at[3 * i] = v.x; values.at[3 * i + 1] = v.y; values.at[3 * i + 2] = v.z; }
 
 #endif

@@ -1,21 +1,30 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The largest angle of the edges around each vertex: those of its half-edges and of those before them.
+// The largest angle of the edges around each vertex.
 #include "kernel.glsl"
 
 VKMESH_PUSH_CONSTANTS(VertexMaximaParams);
 
+// The larger angle of a half-edge and of the one before it, which together meet every edge of a vertex.
+float larger_around(uint h) {
+  const float a = p.angles.at[h];
+  const float b = p.angles.at[h % 3 == 0 ? h + 2 : h - 1];
+  return a > b ? a : b;
+}
+
 void main() {
   VKMESH_THREAD_INDEX(v);
   float largest = 0.0;
+  const uint begin = p.corner_offsets.at[v];
   const uint end = p.corner_offsets.at[v + 1];
-  for (uint c = p.corner_offsets.at[v]; c < end; ++c) {
-    const uint h = p.corner_half_edges.at[c];
-    const uint before = h % 3 == 0 ? h + 2 : h - 1;
-    const float a = p.angles.at[h];
-    const float b = p.angles.at[before];
-    if (a > largest) largest = a;
-    if (b > largest) largest = b;
+  for (uint k = 0; k < VKMESH_UNMASKED; ++k) {
+    const float angle = larger_around(p.corner_half_edges.at[VKMESH_CLAMPED(begin + k, end)]);
+    if (begin + k < end && angle > largest) largest = angle;
   }
+  for (uint c = begin + VKMESH_UNMASKED; c < end; ++c) {
+    const float angle = larger_around(p.corner_half_edges.at[c]);
+    if (angle > largest) largest = angle;
+  }
+  VKMESH_SURPLUS_THREADS_LEAVE;
   p.maxima.at[v] = largest;
 }

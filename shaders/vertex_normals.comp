@@ -8,7 +8,14 @@ VKMESH_PUSH_CONSTANTS(VertexNormalsParams);
 void main() {
   VKMESH_THREAD_INDEX(v);
   precise vec3 sum = vec3(0.0);
+  const uint begin = p.corner_offsets.at[v];
   const uint end = p.corner_offsets.at[v + 1];
-  for (uint c = p.corner_offsets.at[v]; c < end; ++c) sum = sum + load3(p.areas, p.corner_half_edges.at[c] / 3);
+  for (uint k = 0; k < VKMESH_UNMASKED; ++k) {
+    const uint c = begin + k;
+    precise vec3 more = sum + load3(p.areas, p.corner_half_edges.at[VKMESH_CLAMPED(c, end)] / 3);
+    sum = c < end ? more : sum;
+  }
+  for (uint c = begin + VKMESH_UNMASKED; c < end; ++c) sum = sum + load3(p.areas, p.corner_half_edges.at[c] / 3);
+  VKMESH_SURPLUS_THREADS_LEAVE;
   store3(p.normals, v, unit_vector(sum));
 }

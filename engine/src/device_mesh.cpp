@@ -9,6 +9,9 @@
 namespace vkmesh {
 namespace {
 
+/// Kernels load one element even of an empty list, and drop it.
+constexpr std::uint64_t kOneElement = 1;
+
 /// Bytes of each buffer of a DeviceMesh; 0 for those that no pass asks for.
 struct Sizes {
   std::uint64_t positions = 0, smoothed_positions = 0, corners = 0, twins = 0, neighbour_offsets = 0,
@@ -21,19 +24,19 @@ struct Sizes {
     if (passes.laplacian_smoothing) {
       smoothed_positions = positions;
       neighbour_offsets = 4 * (vertices + 1);
-      neighbour_ids = 4 * directed_edges;
+      neighbour_ids = 4 * std::max(directed_edges, kOneElement);
       boundary_bits = 4 * ((vertices + 31) / 32);
     }
     if (passes.vertex_normals || passes.dihedral_angles) {
       corners = 4 * half_edges;
       corner_offsets = 4 * (vertices + 1);
-      corner_half_edges = 4 * half_edges;
-      face_vectors = 12 * mesh.face_count();
+      corner_half_edges = 4 * std::max(half_edges, kOneElement);
+      face_vectors = 12 * std::max<std::uint64_t>(mesh.face_count(), kOneElement);
     }
     if (passes.vertex_normals) vertex_normals = positions;
     if (passes.dihedral_angles) {
       twins = 4 * half_edges;
-      half_edge_angles = 4 * half_edges;
+      half_edge_angles = 4 * std::max<std::uint64_t>(half_edges, 3 * kOneElement);
       vertex_maxima = 4 * vertices;
     }
   }
@@ -55,7 +58,7 @@ Result<void> fill(Context& context, Buffer& buffer, std::uint64_t bytes, const c
                   std::span<const std::uint32_t> values) {
   if (bytes == 0) return {};
   VKMESH_CHECK(make(context, buffer, bytes, name));
-  return buffer.upload_values(values);
+  return values.empty() ? buffer.upload_values<std::uint32_t>({{0u}}) : buffer.upload_values(values);
 }
 
 template <class T>

@@ -26,11 +26,11 @@ double dot(const DVec3& a, const DVec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-void put(float (&to)[4], const DVec3& xyz, double w) {
+void put(float (&to)[4], const DVec3& xyz) {
   to[0] = static_cast<float>(xyz.x);
   to[1] = static_cast<float>(xyz.y);
   to[2] = static_cast<float>(xyz.z);
-  to[3] = static_cast<float>(w);
+  to[3] = 0.0f;
 }
 
 double to_linear(std::uint8_t srgb) {
@@ -39,7 +39,7 @@ double to_linear(std::uint8_t srgb) {
 }
 
 void put_linear(float (&to)[4], const Color& c) {
-  put(to, DVec3(to_linear(c.r), to_linear(c.g), to_linear(c.b)), 1.0);
+  put(to, DVec3(to_linear(c.r), to_linear(c.g), to_linear(c.b)));
 }
 
 std::uint32_t packed(const Color& c) {
@@ -85,14 +85,20 @@ Result<void> put_camera(kernels::DrawView& view, const Camera& camera, std::uint
     view.clip_from_origin[8 + r] = static_cast<float>(rows[r].xyz.z);
     view.clip_from_origin[12 + r] = static_cast<float>(rows[r].w);
   }
-  put(view.origin, origin, kLineBias * (perspective ? at_eye : 4.0));
-  put(view.eye, eye, perspective ? 1.0 : 0.0);
-  put(view.right, axes.right, 0.5 * width);
-  put(view.up, axes.up, 0.5 * height);
-  put(view.back, -axes.forward, f - n);
+  put(view.origin, origin);
+  put(view.eye, eye);
+  put(view.right, axes.right);
+  put(view.up, axes.up);
+  put(view.back, -axes.forward);
   const DVec3 lamp = -axes.forward + 0.45 * axes.up - 0.35 * axes.right;
-  put(view.lamp, lamp / std::sqrt(dot(lamp, lamp)), 0.0);
+  put(view.lamp, lamp / std::sqrt(dot(lamp, lamp)));
   view.nearest = static_cast<float>(n);
+  view.nearest = static_cast<float>(n);
+  view.depth = static_cast<float>(f - n);
+  view.half_width = 0.5f * static_cast<float>(width);
+  view.half_height = 0.5f * static_cast<float>(height);
+  view.line_bias = static_cast<float>(kLineBias * (perspective ? at_eye : 4.0));
+  view.perspective = perspective ? 1 : 0;
   return {};
 }
 
@@ -100,8 +106,8 @@ void put_style(kernels::DrawView& view, const DrawGeometry& geometry, const Draw
   put_linear(view.plain, style.plain);
   put_linear(view.none, style.none);
   put_linear(view.flipped, style.flipped);
-  put(view.edge, DVec3(style.edge.r, style.edge.g, style.edge.b) / 255.0,
-      static_cast<double>(style.edge_width));
+  put(view.edge, DVec3(style.edge.r, style.edge.g, style.edge.b) / 255.0);
+  view.edge_width = style.edge_width;
   view.value_low = static_cast<float>(style.range.low);
   const double width = style.range.high - style.range.low;
   view.value_scale = width > 0.0 ? static_cast<float>(1.0 / width) : 0.0f;

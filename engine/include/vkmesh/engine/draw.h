@@ -42,7 +42,7 @@ struct DrawStyle {
   DrawMode mode = DrawMode::kShaded;
   DrawColors colors = DrawColors::kPlain;
   ColorMap map = ColorMap::kSequential;
-  ValueRange range;            ///< Values at its ends get the first and last colour of the map.
+  ValueRange range{};          ///< Values at its ends get the first and last colour of the map.
   Color plain{204, 205, 210};  ///< The surface without other colours.
   Color background{255, 255, 255};
   Color none{150, 150, 150};  ///< Elements whose value is kNoValue.
@@ -61,7 +61,7 @@ inline constexpr float kNoValue = -3.4e38f;
 struct DrawEdges {
   const Buffer* ends = nullptr;  ///< 2 points an edge.
   std::uint32_t count = 0;
-  Color color;
+  Color color{};
   float width = 3.0f;  ///< Pixels.
 };
 
@@ -98,18 +98,18 @@ struct DrawGeometry {
 
 /// What a DrawMesh holds beside the triangles. Spans may be empty.
 struct DrawMeshData {
-  std::span<const Vec3> normals;  ///< A point each.
-  std::span<const float> values;  ///< An element each. Values that are not finite become kNoValue.
-  std::span<const Color> colors;  ///< An element each, instead of values.
+  std::span<const Vec3> normals{};  ///< A point each.
+  std::span<const float> values{};  ///< An element each. Values that are not finite become kNoValue.
+  std::span<const Color> colors{};  ///< An element each, instead of values.
   DrawElement element = DrawElement::kPoint;
-  std::span<const std::uint32_t> source_face;  ///< Triangulated::source_face; for edges of polygons.
-  std::span<const float> spacing;              ///< A point each.
+  std::span<const std::uint32_t> source_face{};  ///< Triangulated::source_face; for edges of polygons.
+  std::span<const float> spacing{};              ///< A point each.
   struct Edges {
-    std::span<const std::uint32_t> ends;  ///< 2 points an edge.
-    Color color;
+    std::span<const std::uint32_t> ends{};  ///< 2 points an edge.
+    Color color{};
     float width = 3.0f;
   };
-  std::vector<Edges> edges;
+  std::vector<Edges> edges{};
 };
 
 /// Any mesh, uploaded for drawing: it need not be manifold, nor have faces. Moves, does not copy.
