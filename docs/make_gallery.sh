@@ -15,16 +15,16 @@ mkdir -p "$out"
 "$vkmesh" simplify "$dragon" "$work/tenth.ply" --ratio 0.1 --quiet
 "$vkmesh" simplify "$dragon" "$work/hundredth.ply" --ratio 0.01 --quiet
 "$vkmesh" render "$dragon" "$dragon" "$work/smooth.ply" "$work/tenth.ply" "$work/hundredth.ply" "$work/hundredth.ply" \
-  "$out/dragon_sheet.png" --size 420x340 --columns 3 --error --color none,curvature,none,none,none,none \
+  "$out/dragon_sheet.png" --size 340x280 --columns 3 --error --color none,curvature,none,none,none,none \
   --style shaded,shaded,shaded,shaded,shaded,shaded-wire --caption "dragon" --caption "curvature" \
   --caption "30 smoothing steps" --caption "10 %" --caption "1 %" --caption "1 %, edges"
 "$vkmesh" render "$dragon" "$out/dragon.png" --size 800x600
 "$vkmesh" render "$dragon" "$out/dragon_curvature.png" --size 800x600 --color curvature
 "$vkmesh" render "$cgal/meshes/fandisk.off" "$cgal/meshes/fandisk.off" "$out/fandisk.png" --size 480x400 \
-  --elevation 30 --azimuth 150 --style shaded,shaded-wire --color crease,dihedral
+  --style shaded,shaded-wire --color crease,dihedral
 "$vkmesh" render "$cgal/meshes/elephant.off" "$cgal/meshes/elephant.off" "$cgal/meshes/elephant.off" \
   "$out/elephant.png" --size 360x400 --columns 3 --style shaded,flat,wireframe --color none,normal,valence
 "$vkmesh" render "$cgal/points_3/kitten.off" "$cgal/points_3/ball.ply" "$cgal/points_3/hippo1.ply" "$out/clouds.png" \
-  --size 360x360 --columns 3 --frame each --style points,splats,splats --color none,segment_index,normal
+  --size 360x360 --columns 3 --frame each --style splats,splats,points --color none,segment_index,normal
 "$vkmesh" render "$cgal/meshes/elephant-with-holes.off" "$cgal/meshes/blobby-shuffled.off" "$out/broken.png" \
   --size 480x400 --frame each --style flat --show-flipped --show-boundary --show-non-manifold

@@ -20,6 +20,14 @@ Color ink_on(Color background) {
   return dark ? Color{240, 240, 240} : Color{30, 32, 36};
 }
 
+/// A line at the given scale, at a smaller one where it is too wide, and at last without its end.
+void draw_line(Picture& picture, std::int64_t x, std::int64_t y, std::string text, std::int64_t width,
+               Color ink, std::uint32_t scale) {
+  while (scale > 1 && text_width(text, scale) > width) --scale;
+  while (!text.empty() && text_width(text, scale) > width) text.pop_back();
+  draw_text(picture, x, y, text, ink, scale);
+}
+
 std::string tick_text(double value, double step) {
   // Rounding of the ticks' sum must not show as 1e-17.
   if (std::abs(value) < 1e-9 * step) value = 0.0;
@@ -52,7 +60,7 @@ Result<Picture> legend_strip(const Legend& legend, std::uint32_t width, Color ba
     const std::int64_t bar = std::max<std::int64_t>(std::int64_t{width} - 2 * left, 1);
     std::int64_t y = kPadding / 2 * s;
     if (!legend.title.empty()) {
-      draw_text(strip, left, y, text_that_fits(legend.title, bar, scale), ink, scale);
+      draw_line(strip, left, y, legend.title, bar, ink, scale);
       y += line;
       const ColorTable table = color_table(legend.map);
       for (std::int64_t x = 0; x < bar; ++x)
@@ -94,7 +102,7 @@ Result<Picture> legend_strip(const Legend& legend, std::uint32_t width, Color ba
     }
     for (const Legend::Swatch& swatch : legend.swatches) {
       fill_rectangle(strip, left, y, 7 * s, 7 * s, swatch.color);
-      draw_text(strip, left + 11 * s, y, text_that_fits(swatch.text, bar - 11 * s, scale), ink, scale);
+      draw_line(strip, left + 11 * s, y, swatch.text, bar - 11 * s, ink, scale);
       y += line;
     }
     return strip;

@@ -109,11 +109,11 @@ VkResult VKAPI_PTR submit_loses_device(VkQueue, std::uint32_t, const VkSubmitInf
   return VK_ERROR_DEVICE_LOST;
 }
 
-/// Turns each constant 2.0 of a shader into the next float.
+/// Turns each constant 2.0 of a shader, Newton's for the reciprocal, into 2.5.
 VkResult VKAPI_PTR module_of_a_bad_device(VkDevice device, const VkShaderModuleCreateInfo* info,
                                           const VkAllocationCallbacks* allocator, VkShaderModule* module) {
   std::vector<std::uint32_t> words(info->pCode, info->pCode + info->codeSize / 4);
-  std::replace(words.begin(), words.end(), 0x40000000u, 0x40000001u);
+  std::replace(words.begin(), words.end(), 0x40000000u, 0x40200000u);
   VkShaderModuleCreateInfo changed = *info;
   changed.pCode = words.data();
   return FakeLoader::real<PFN_vkCreateShaderModule>("vkCreateShaderModule")(device, &changed, allocator,

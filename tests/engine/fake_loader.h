@@ -10,7 +10,8 @@
 
 namespace vkmesh::test {
 
-/// One at a time; while it lives, entry() hands out its replacements.
+/// One at a time, and one context of it at a time; while it lives, entry() hands out its replacements, to
+/// contexts made after them.
 class FakeLoader {
  public:
   FakeLoader();

@@ -31,4 +31,11 @@ VKMESH_CLONES void angles_between(std::span<const Vec3> a, std::span<const Vec3>
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = angle_between(a[i], b[i]);
 }
 
+VKMESH_CLONES std::uint32_t largest_magnitude(std::span<const Vec3> vectors) {
+  std::uint32_t largest = 0;
+  for (const Vec3& v : vectors)
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, bits(v[k]) & 0x7fffffffu);
+  return largest;
+}
+
 }  // namespace vkmesh::detail

@@ -11,7 +11,8 @@ namespace vkmesh {
 Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
   return detail::catching([&]() -> Result<DihedralAngles> {
     VKMESH_CHECK(detail::require_triangles(mesh, "dihedral_angles"));
-    VKMESH_TRY(const std::vector<Vec3> p, detail::prepared(positions, mesh.vertex_count()));
+    VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+    const std::span<const Vec3> p = positions;
     const auto corners = mesh.origins(), twins = mesh.twins();
     std::vector<Vec3> normals(mesh.face_count());
     for (std::size_t f = 0; f < normals.size(); ++f)

@@ -4,6 +4,7 @@
 #include <vkmesh/passes/laplacian_smoothing.h>
 
 #include "catching.h"
+#include "parallel.h"
 #include "passes/pass_input.h"
 
 namespace vkmesh {
@@ -28,25 +29,29 @@ Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
   return detail::catching([&]() -> Result<std::vector<Vec3>> {
     if (!(options.lambda >= 0.0f && options.lambda <= 1.0f))
       return fail(ErrorCode::kUsage, "lambda must lie in [0, 1], not " + std::to_string(options.lambda));
-    VKMESH_TRY(std::vector<Vec3> source, detail::prepared(positions, neighbours.vertex_count()));
+    VKMESH_CHECK(detail::require_positions(positions, neighbours.vertex_count()));
+    std::vector<Vec3> source(positions.size());
+    VKMESH_CHECK(prepare_positions(positions, source));
     std::vector<Vec3> target(source.size());
     const std::vector<float> reciprocals = reciprocals_of_counts(neighbours);
     for (std::uint32_t step = 0; step < options.iterations; ++step) {
       if (progress && !progress(static_cast<double>(step) / options.iterations))
         return fail(ErrorCode::kInterrupted, "smoothing was interrupted");
-      for (std::uint32_t v = 0; v < source.size(); ++v) {
-        const Vec3 here = source[v];
-        const auto around = neighbours.of(VertexId(v));
-        if (around.empty() || (options.fix_boundary && neighbours.is_boundary(VertexId(v)))) {
-          target[v] = here;
-          continue;
+      detail::parallel_ranges(source.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+        for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
+          const Vec3 here = source[v];
+          const auto around = neighbours.of(VertexId(v));
+          if (around.empty() || (options.fix_boundary && neighbours.is_boundary(VertexId(v)))) {
+            target[v] = here;
+            continue;
+          }
+          Vec3 sum(0.0f);
+          for (const std::uint32_t n : around) sum += source[n];
+          const Vec3 mean = zero_below(sum * reciprocals[around.size()], VKMESH_TINY_COORDINATE);
+          const Vec3 move = zero_below(options.lambda * (mean - here), VKMESH_TINY_COORDINATE);
+          target[v] = zero_below(here + move, VKMESH_TINY_COORDINATE);
         }
-        Vec3 sum(0.0f);
-        for (const std::uint32_t n : around) sum += source[n];
-        const Vec3 mean = zero_below(sum * reciprocals[around.size()], VKMESH_TINY_COORDINATE);
-        const Vec3 move = zero_below(options.lambda * (mean - here), VKMESH_TINY_COORDINATE);
-        target[v] = zero_below(here + move, VKMESH_TINY_COORDINATE);
-      }
+      });
       std::swap(source, target);
     }
     return source;

@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/passes/arithmetic.h>
@@ -17,13 +16,10 @@ inline Result<void> require_triangles(const HalfEdgeMesh& mesh, const char* pass
               std::string(pass) + " takes triangles only: triangulate the polygons first");
 }
 
-inline Result<std::vector<Vec3>> prepared(std::span<const Vec3> positions, std::size_t vertices) {
-  if (positions.size() != vertices)
-    return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " positions for " +
-                                       std::to_string(vertices) + " vertices");
-  std::vector<Vec3> result(positions.size());
-  VKMESH_CHECK(prepare_positions(positions, result));
-  return result;
+inline Result<void> require_positions(std::span<const Vec3> positions, std::size_t vertices) {
+  if (positions.size() == vertices) return check_positions(positions);
+  return fail(ErrorCode::kUsage,
+              std::to_string(positions.size()) + " positions for " + std::to_string(vertices) + " vertices");
 }
 
 }  // namespace vkmesh::detail

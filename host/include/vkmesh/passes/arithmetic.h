@@ -153,9 +153,14 @@ namespace detail {
   return 2.0f * first_quadrant_angle(apart, along);
 }
 
-/// What passes do to positions before they compute: coordinates below 2^-100 in magnitude become +0.
-/// Errors: kUsage when the sizes differ; kUnsuitable for a coordinate that is not below kMaxCoordinate (or
-/// not finite).
+/// What every pass asks of positions. O(n).
+/// Errors: kUnsuitable for a coordinate that is not below kMaxCoordinate in magnitude (or not finite), by
+/// vertex.
+[[nodiscard]] Result<void> check_positions(std::span<const Vec3> positions);
+
+/// check_positions(), and a copy in which coordinates below 2^-100 in magnitude are +0, as smoothing works
+/// on. (Normals and angles need no such copy: beside the thresholds for lengths, coordinates as small as
+/// these change nothing.) Errors: kUsage when the sizes differ; as check_positions().
 [[nodiscard]] Result<void> prepare_positions(std::span<const Vec3> positions, std::span<Vec3> prepared);
 
 }  // namespace vkmesh
