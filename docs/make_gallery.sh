@@ -16,7 +16,7 @@ mkdir -p "$out"
 "$vkmesh" simplify "$dragon" "$work/hundredth.ply" --ratio 0.01 --quiet
 "$vkmesh" render "$dragon" "$dragon" "$work/smooth.ply" "$work/tenth.ply" "$work/hundredth.ply" "$work/hundredth.ply" \
   "$out/dragon_sheet.png" --size 340x280 --columns 3 --error --color none,curvature,none,none,none,none \
-  --style shaded,shaded,shaded,shaded,shaded,shaded-wire --caption "dragon" --caption "curvature" \
+  --style shaded,shaded,shaded,shaded,shaded,shaded-wire --caption dragon --caption curvature \
   --caption "30 smoothing steps" --caption "10 %" --caption "1 %" --caption "1 %, edges"
 "$vkmesh" render "$dragon" "$out/dragon.png" --size 800x600
 "$vkmesh" render "$dragon" "$out/dragon_curvature.png" --size 800x600 --color curvature

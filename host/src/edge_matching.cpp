@@ -8,6 +8,8 @@
 
 #include <vkmesh/handles.h>
 
+#include "parallel.h"
+
 namespace vkmesh::detail {
 namespace {
 
@@ -95,6 +97,11 @@ struct Defect {
   void add(Describe&& describe) {
     if (count++ == 0) first = describe();
   }
+  Defect& operator+=(const Defect& later) {
+    if (count == 0) first = later.first;
+    count += later.count;
+    return *this;
+  }
 };
 
 void append(std::string& sentence, const Defect& defect, const char* one, const char* many) {
@@ -104,14 +111,123 @@ void append(std::string& sentence, const Defect& defect, const char* one, const 
               (defect.count == 1 ? "" : "first: ") + defect.first + ")";
 }
 
-std::string edge_name(std::uint32_t a, std::uint32_t b) {
+std::string edge_name(std::size_t a, std::size_t b) {
   return "points " + std::to_string(a) + " and " + std::to_string(b);
 }
+
+// The records of all edges, those of each point side by side.
+struct EdgeRecords {
+  std::vector<std::uint64_t> records;
+  std::vector<std::uint32_t> end;  // of the records of each point, where those of the next begin
+};
+
+// A record for each edge of each face, distributed by its smaller point (a counting sort): the larger point
+// above, the half-edge below, so that the plain order of the 64-bit words is the order wanted.
+EdgeRecords distribute_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                             std::span<const std::uint32_t> face_offsets) {
+  EdgeRecords result{std::vector<std::uint64_t>(corners.size()), std::vector<std::uint32_t>(point_count, 0)};
+  std::vector<std::uint32_t>& slot = result.end;
+  for_each_edge(corners, face_offsets,
+                [&](std::uint32_t, std::uint32_t from, std::uint32_t to) { ++slot[std::min(from, to)]; });
+  std::uint32_t placed = 0;
+  for (std::uint32_t& s : slot) placed += std::exchange(s, placed);
+  for_each_edge(corners, face_offsets, [&](std::uint32_t h, std::uint32_t from, std::uint32_t to) {
+    const std::uint32_t other = from == to ? kLoop : std::max(from, to);
+    result.records[slot[std::min(from, to)]++] = std::uint64_t{other} << 32 | h;
+  });
+  return result;
+}
+
+// What the edges of some points are.
+struct EdgeCounts {
+  std::size_t edges = 0, boundary = 0;
+  Defect non_manifold, misoriented;
+
+  EdgeCounts& operator+=(const EdgeCounts& later) {
+    edges += later.edges;
+    boundary += later.boundary;
+    non_manifold += later.non_manifold;
+    misoriented += later.misoriented;
+    return *this;
+  }
+};
+
+// Sorts the records of the points [first, last) and joins the twins among them.
+EdgeCounts pair_edges(EdgeRecords& edges, std::span<const std::uint32_t> corners, std::size_t first,
+                      std::size_t last, std::span<std::uint32_t> twin) {
+  EdgeCounts counts;
+  for (std::size_t a = first; a < last; ++a) {
+    const auto begin = edges.records.begin() + (a == 0 ? 0 : edges.end[a - 1]);
+    const auto end = edges.records.begin() + edges.end[a];
+    sort_records(begin, end);
+    for (auto i = begin; i != end;) {
+      const auto b = static_cast<std::uint32_t>(*i >> 32);
+      if (b == kLoop) break;
+      auto j = i + 1;
+      while (j != end && *j >> 32 == b) ++j;
+      ++counts.edges;
+      const auto h = static_cast<std::uint32_t>(*i);
+      if (j - i == 1) {
+        ++counts.boundary;
+      } else if (j - i > 2) {
+        counts.non_manifold.add([&] { return edge_name(a, b); });
+      } else {
+        const auto g = static_cast<std::uint32_t>(*(i + 1));
+        if (corners[h] == corners[g]) {
+          counts.misoriented.add([&] { return edge_name(a, b); });
+        } else {
+          twin[h] = g;
+          twin[g] = h;
+        }
+      }
+      i = j;
+    }
+  }
+  return counts;
+}
+
+// On the boundary the half-edge without a twin, elsewhere the first.
+std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                                              std::span<const std::uint32_t> twin) {
+  std::vector<std::uint32_t> leading(point_count, kInvalid);
+  for (std::size_t h = corners.size(); h-- > 0;) leading[corners[h]] = static_cast<std::uint32_t>(h);
+  for (std::size_t h = 0; h < corners.size(); ++h)
+    if (twin[h] == kInvalid) leading[corners[h]] = static_cast<std::uint32_t>(h);
+  return leading;
+}
+
+// The faces that a walk meets around a vertex, from its leading half-edge.
+std::uint32_t fan_size(std::uint32_t leading, std::span<const std::uint32_t> twin,
+                       std::span<const std::uint32_t> face_offsets) {
+  const auto previous = [&](std::uint32_t h) -> std::uint32_t {
+    if (face_offsets.empty()) return h % 3 == 0 ? h + 2 : h - 1;
+    const auto next_face = std::upper_bound(face_offsets.begin(), face_offsets.end(), h);
+    return h == *(next_face - 1) ? *next_face - 1 : h - 1;
+  };
+  std::uint32_t met = 0, h = leading;
+  do {
+    ++met;
+    h = twin[previous(h)];
+  } while (h != kInvalid && h != leading);
+  return met;
+}
+
+// How many points are isolated, and how many corners of faces the fans of the others hold.
+struct FanCounts {
+  std::size_t isolated = 0, met = 0;
+
+  FanCounts& operator+=(const FanCounts& other) {
+    isolated += other.isolated;
+    met += other.met;
+    return *this;
+  }
+};
 
 }  // namespace
 
 Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
                              std::span<const std::uint32_t> face_offsets) {
+  constexpr std::size_t kGrain = 1 << 14;
   VKMESH_CHECK(check_input(point_count, corners, face_offsets));
   const std::size_t face_count = face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
   const auto face = [&](std::size_t f) {
@@ -123,86 +239,40 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
   ConsolidateReport& report = matching.report;
   report.points = point_count;
   report.faces = face_count;
-  Defect degenerate, non_manifold, misoriented, torn;
 
+  Defect degenerate, torn;
   for (std::size_t f = 0; f < face_count; ++f)
     if (is_degenerate(face(f))) degenerate.add([&] { return "face " + std::to_string(f); });
 
-  // A record for each edge of each face, distributed by its smaller point (a counting sort): the larger point
-  // above, the half-edge below, so that the plain order of the 64-bit words is the order wanted.
-  std::vector<std::uint32_t> slot(point_count + 1, 0);
-  for_each_edge(corners, face_offsets,
-                [&](std::uint32_t, std::uint32_t from, std::uint32_t to) { ++slot[std::min(from, to)]; });
-  std::uint32_t placed = 0;
-  for (std::uint32_t& s : slot) placed += std::exchange(s, placed);
-  std::vector<std::uint64_t> records(corners.size());
-  for_each_edge(corners, face_offsets, [&](std::uint32_t h, std::uint32_t from, std::uint32_t to) {
-    records[slot[std::min(from, to)]++] = std::uint64_t{from == to ? kLoop : std::max(from, to)} << 32 | h;
-  });
-  // Each slot now stands at the end of its point's records, where those of the next begin.
-
   matching.twin.assign(corners.size(), kInvalid);
-  for (std::uint32_t a = 0; a < point_count; ++a) {
-    const auto begin = records.begin() + (a == 0 ? 0 : slot[a - 1]), end = records.begin() + slot[a];
-    sort_records(begin, end);
-    for (auto i = begin; i != end;) {
-      const auto b = static_cast<std::uint32_t>(*i >> 32);
-      if (b == kLoop) break;
-      auto j = i + 1;
-      while (j != end && *j >> 32 == b) ++j;
-      ++report.edges;
-      const auto h = static_cast<std::uint32_t>(*i);
-      if (j - i == 1) {
-        ++report.boundary_edges;
-      } else if (j - i > 2) {
-        non_manifold.add([&] { return edge_name(a, b); });
-      } else {
-        const auto g = static_cast<std::uint32_t>(*(i + 1));
-        if (corners[h] == corners[g]) {
-          misoriented.add([&] { return edge_name(a, b); });
-        } else {
-          matching.twin[h] = g;
-          matching.twin[g] = h;
-        }
-      }
-      i = j;
-    }
+  EdgeCounts edges;
+  {
+    EdgeRecords records = distribute_edges(point_count, corners, face_offsets);
+    edges = parallel_sum<EdgeCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
+      return pair_edges(records, corners, first, last, matching.twin);
+    });
   }
-  records = {};
 
-  if (degenerate.count + non_manifold.count + misoriented.count == 0) {
-    // The fan of a vertex is walked from its leading half-edge, on the boundary the one without a twin; if
-    // the walk meets fewer faces than there are, the rest form another fan.
-    const auto previous = [&](std::uint32_t h) -> std::uint32_t {
-      if (face_offsets.empty()) return h % 3 == 0 ? h + 2 : h - 1;
-      const auto next_face = std::upper_bound(face_offsets.begin(), face_offsets.end(), h);
-      return h == *(next_face - 1) ? *next_face - 1 : h - 1;
-    };
-    const auto walk = [&](std::uint32_t start) {
-      std::uint32_t met = 0, h = start;
-      do {
-        ++met;
-        h = matching.twin[previous(h)];
-      } while (h != kInvalid && h != start);
-      return met;
-    };
-    matching.leading.assign(point_count, kInvalid);
-    for (std::size_t h = corners.size(); h-- > 0;)
-      matching.leading[corners[h]] = static_cast<std::uint32_t>(h);
-    for (std::size_t h = 0; h < corners.size(); ++h)
-      if (matching.twin[h] == kInvalid) matching.leading[corners[h]] = static_cast<std::uint32_t>(h);
-    std::size_t met = 0;
-    for (const std::uint32_t start : matching.leading) {
-      if (start == kInvalid)
-        ++report.isolated_points;
-      else
-        met += walk(start);
-    }
-    if (met != corners.size()) {
+  if (degenerate.count + edges.non_manifold.count + edges.misoriented.count == 0) {
+    matching.leading = leading_half_edges(point_count, corners, matching.twin);
+    const auto fans = parallel_sum<FanCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
+      FanCounts counts;
+      for (std::size_t v = first; v < last; ++v) {
+        const std::uint32_t h = matching.leading[v];
+        if (h == kInvalid)
+          ++counts.isolated;
+        else
+          counts.met += fan_size(h, matching.twin, face_offsets);
+      }
+      return counts;
+    });
+    report.isolated_points = fans.isolated;
+    if (fans.met != corners.size()) {
+      // Some vertex has faces that its fan does not meet: they form another fan.
       std::vector<std::uint32_t> degree(point_count, 0);
       for (const std::uint32_t c : corners) ++degree[c];
-      for (std::uint32_t v = 0; v < point_count; ++v)
-        if (degree[v] != 0 && walk(matching.leading[v]) != degree[v])
+      for (std::size_t v = 0; v < point_count; ++v)
+        if (degree[v] != 0 && fan_size(matching.leading[v], matching.twin, face_offsets) != degree[v])
           torn.add([&] { return "point " + std::to_string(v); });
     }
   } else {
@@ -211,13 +281,16 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
     report.isolated_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
   }
 
+  report.edges = edges.edges;
+  report.boundary_edges = edges.boundary;
   report.degenerate_faces = degenerate.count;
-  report.non_manifold_edges = non_manifold.count;
-  report.misoriented_edges = misoriented.count;
+  report.non_manifold_edges = edges.non_manifold.count;
+  report.misoriented_edges = edges.misoriented.count;
   report.non_manifold_vertices = torn.count;
   append(report.defects, degenerate, "degenerate face", "degenerate faces");
-  append(report.defects, non_manifold, "edge with three or more faces", "edges with three or more faces");
-  append(report.defects, misoriented, "edge whose two faces disagree in orientation",
+  append(report.defects, edges.non_manifold, "edge with three or more faces",
+         "edges with three or more faces");
+  append(report.defects, edges.misoriented, "edge whose two faces disagree in orientation",
          "edges whose two faces disagree in orientation");
   append(report.defects, torn, "point where separate fans of faces meet",
          "points where separate fans of faces meet");

@@ -89,7 +89,7 @@ class OffReader {
     if (!text_.line_done()) return expected("the end of the line");
     // A digit and what parts it from the next number; the last line may lack its end.
     const std::uint64_t left = text_.left() + 1;
-    const std::uint64_t vertex_bytes = 6 + (normals_ ? 6 : 0) + (uvs_ ? 4 : 0), face_bytes = 8;
+    const std::uint64_t vertex_bytes = 6 + (normals_ ? 6 : 0) + (uvs_ ? 4 : 0), face_bytes = 2;
     if (points_ > left / vertex_bytes || faces_ > (left - points_ * vertex_bytes) / face_bytes)
       return source_.bad_line(line, "the header promises " + std::to_string(points_) + " vertices and " +
                                         std::to_string(faces_) + " faces, but only " +
