@@ -37,16 +37,26 @@ fetch_dragon() {
   done
 }
 
+# The package is unpacked and not installed: nothing else of it is needed, and small systems leave out /usr/share/doc.
 fetch_cgal() {
   [ -e data/cgal/.complete ] && return
-  local archive=/usr/share/doc/libcgal-dev/data.tar.gz
-  [ -e "$archive" ] || {
-    echo "fetch_data: $archive is missing: install Debian's libcgal-demo" >&2
+  local work
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' RETURN
+  chmod 755 "$work" # apt's own user writes there
+  (
+    cd "$work"
+    # Without package lists, or with old ones, the download fails: then fetch them, and try again.
+    apt-get download -q libcgal-demo || { $([ "$(id -u)" = 0 ] || echo sudo) apt-get update -q && apt-get download -q libcgal-demo; }
+    dpkg-deb --extract libcgal-demo_*.deb .
+  ) >"$work/apt.log" 2>&1 || {
+    cat "$work/apt.log" >&2
+    echo "fetch_data: apt-get could not download libcgal-demo" >&2
     exit 1
   }
   rm -rf data/cgal
   mkdir -p data/cgal
-  tar -xzf "$archive" -C data/cgal --strip-components=1
+  tar -xzf "$work/usr/share/doc/libcgal-dev/data.tar.gz" -C data/cgal --strip-components=1
   touch data/cgal/.complete
 }
 

@@ -70,13 +70,13 @@ std::vector<std::uint32_t> copy_of(std::span<const std::uint32_t> module) {
 
 }  // namespace
 
-TEST_CASE("shaders keep the rules of exact arithmetic") {
+TEST_CASE("shaders keep the rules of exact arithmetic", "[no-device]") {
   CHECK(detail::embedded_kernels().size() >= 7);
   for (const KernelSource& source : detail::embedded_kernels())
     for (const std::string& breach : breaches(source.spirv)) FAIL_CHECK(source.name << ": " << breach);
 }
 
-TEST_CASE("a breach of the rules is seen") {
+TEST_CASE("a breach of the rules is seen", "[no-device]") {
   const auto original = detail::canary_kernel().spirv;
   REQUIRE(breaches(original).empty());
   const auto instructions = detail::spirv_instructions(original);
@@ -105,7 +105,7 @@ TEST_CASE("a breach of the rules is seen") {
   CHECK(kinds.size() == 4);
 }
 
-TEST_CASE("shaders are valid SPIR-V, as compiled and with float controls") {
+TEST_CASE("shaders are valid SPIR-V, as compiled and with float controls", "[no-device]") {
   if (std::system("command -v spirv-val > /dev/null 2>&1") != 0) {
     WARN("spirv-val is not installed (Debian's package spirv-tools): not checked");
     return;

@@ -1,6 +1,7 @@
 #define CATCH_CONFIG_EXTERNAL_INTERFACES
 #include "support/device.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <iostream>
@@ -63,7 +64,14 @@ class DeviceListener : public Catch::TestEventListenerBase {
 
   void testCaseEnded(const Catch::TestCaseStats& stats) override {
     Catch::TestEventListenerBase::testCaseEnded(stats);
-    if (watch().device_used) ++device_tests_;
+    const auto& tags = stats.testInfo.tags;
+    if (watch().device_used) {
+      ++device_tests_;
+    } else if (std::find(tags.begin(), tags.end(), "no-device") == tags.end()) {
+      std::cerr << "the test '" << stats.testInfo.name << "' touched no device, and is not tagged [no-device]"
+                << std::endl;
+      skipped_ = true;
+    }
     report("the test '" + stats.testInfo.name + "'");
   }
 
@@ -73,8 +81,9 @@ class DeviceListener : public Catch::TestEventListenerBase {
     shared_context().reset();
     report("the end");
     std::cerr << "device tests: " << device_tests_ << " run" << std::endl;
-    if (!said_something_) return;
-    std::cerr << "the run fails: the validation layer was not silent" << std::endl;
+    if (said_something_) std::cerr << "the run fails: the validation layer was not silent" << std::endl;
+    if (skipped_) std::cerr << "the run fails: a device test ran without the device" << std::endl;
+    if (!said_something_ && !skipped_) return;
     // The framework lets no listener fail a run.
     std::_Exit(1);
   }
@@ -90,6 +99,7 @@ class DeviceListener : public Catch::TestEventListenerBase {
 
   int device_tests_ = 0;
   bool said_something_ = false;
+  bool skipped_ = false;
 };
 
 CATCH_REGISTER_LISTENER(DeviceListener)

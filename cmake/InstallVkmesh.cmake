@@ -1,0 +1,18 @@
+# `cmake --install`: the libraries, their headers, and a package that find_package(vkmesh) finds.
+include(CMakePackageConfigHelpers)
+
+set(vkmesh_package ${CMAKE_INSTALL_LIBDIR}/cmake/vkmesh)
+set(vkmesh_targets vkmesh_host)
+install(DIRECTORY host/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(VKMESH_VULKAN)
+  list(APPEND vkmesh_targets vkmesh_engine)
+  install(DIRECTORY engine/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endif()
+install(TARGETS ${vkmesh_targets} EXPORT vkmesh-targets)
+install(EXPORT vkmesh-targets NAMESPACE vkmesh:: DESTINATION ${vkmesh_package})
+configure_package_config_file(cmake/vkmesh-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/vkmesh-config.cmake
+  INSTALL_DESTINATION ${vkmesh_package})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/vkmesh-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vkmesh-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/vkmesh-config-version.cmake
+  DESTINATION ${vkmesh_package})
