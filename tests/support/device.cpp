@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <dlfcn.h>
 
 namespace vkmesh::test {
 namespace {
@@ -46,6 +47,9 @@ class DeviceListener : public Catch::TestEventListenerBase {
 
   void testRunStarting(const Catch::TestRunInfo& info) override {
     Catch::TestEventListenerBase::testRunStarting(info);
+    // Its statics are then still there when leaks are looked for: unloaded with the last instance, it would
+    // leave behind what only they point to.
+    (void)dlopen("libVkLayer_khronos_validation.so", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     const auto opened = open_shared_context();
     if (!opened) {
       std::cerr << "device: none: " << opened.error().describe() << std::endl;
