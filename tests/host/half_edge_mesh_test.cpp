@@ -214,7 +214,8 @@ TEST_CASE("validate names the broken invariant") {
   for (std::uint32_t h = 24; h-- > 0;) both.leading[tie.corners[h]] = h;
   check_broken(both, "the faces of a vertex form one fan");
 
-  // Two triangles back to back, open along one of their three edges: the fan of 0 ends at the neighbour it began with.
+  // Two triangles back to back, open along one of their three edges: the fan of 0 ends at the neighbour it
+  // began with.
   Arrays pillow = one;
   pillow.origin = {0, 1, 2, 0, 2, 1};
   pillow.twin = {kInvalid, 4, 3, 2, 1, kInvalid};

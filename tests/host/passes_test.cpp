@@ -193,8 +193,7 @@ TEST_CASE("dihedral angles of known solids") {
   SECTION("regular tetrahedron: its normals are π − arccos(1/3) apart") {
     const IndexedFaceSet set = test::tetrahedron();  // coordinates of six digits
     const DihedralAngles angles = dihedral_angles(test::half_edges(set), set.points).value();
-    for (const float a : angles.half_edge)
-      CHECK(std::fabs(a - (pi - std::acos(1.0 / 3.0))) < 1e-5);
+    for (const float a : angles.half_edge) CHECK(std::fabs(a - (pi - std::acos(1.0 / 3.0))) < 1e-5);
   }
   SECTION("grid: flat inside and on the boundary") {
     const IndexedFaceSet set = test::grid(3, 2);

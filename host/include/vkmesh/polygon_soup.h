@@ -24,8 +24,8 @@ struct PolygonSoup {
 };
 
 /// Identifies corners whose coordinates are equal (0 equals -0) and numbers the points in order of first
-/// appearance. Faces and their channels keep their order. O(n) expected for n corners (a hash table). Errors: kOutOfMemory;
-/// kUnsuitable for more than 2^32 - 2 corners.
+/// appearance. Faces and their channels keep their order. O(n) expected for n corners (a hash table). Errors:
+/// kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
 [[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
 
 }  // namespace vkmesh
