@@ -24,8 +24,8 @@ namespace vkmesh::kernels {
 // Specialization constant 0: what a surface or point is coloured by.
 #define VKMESH_COLOR_PLAIN 0u
 #define VKMESH_COLOR_NORMAL 1u
-#define VKMESH_COLOR_VALUE 2u  ///< a float, through the colour table
-#define VKMESH_COLOR_DIRECT 3u ///< four bytes red, green, blue, alpha
+#define VKMESH_COLOR_VALUE 2u   ///< a float, through the colour table
+#define VKMESH_COLOR_DIRECT 3u  ///< four bytes red, green, blue, alpha
 
 // Specialization constant 1: the polygons' edges.
 #define VKMESH_NO_EDGES 0u
@@ -51,54 +51,60 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Dr
 #else
 struct DrawView {
 #endif
-  // Of vectors, xyz alone count: Mesa 22.3's llvmpipe reads x for w where a shader loads both xyz and w. Colours are
-  // linear, as light adds up, unless said otherwise.
+  // Of vectors, xyz alone count: Mesa 22.3's llvmpipe reads x for w where a shader loads both xyz and w.
+  // Colours are linear, as light adds up, unless said otherwise.
   VKMESH_MAT4(clip_from_origin);  ///< Column by column; of positions relative to `origin`.
   VKMESH_VEC4(origin);
-  VKMESH_VEC4(eye);               ///< relative to `origin`
-  VKMESH_VEC4(right);             ///< unit vectors
+  VKMESH_VEC4(eye);    ///< relative to `origin`
+  VKMESH_VEC4(right);  ///< unit vectors
   VKMESH_VEC4(up);
-  VKMESH_VEC4(back);              ///< against the view
-  VKMESH_VEC4(lamp);              ///< towards the light
-  VKMESH_VEC4(plain);             ///< of VKMESH_COLOR_PLAIN
-  VKMESH_VEC4(none);              ///< of elements without a value
-  VKMESH_VEC4(flipped);           ///< of back faces
-  VKMESH_VEC4(edge);              ///< of the triangles' edges: sRGB
+  VKMESH_VEC4(back);     ///< against the view
+  VKMESH_VEC4(lamp);     ///< towards the light
+  VKMESH_VEC4(plain);    ///< of VKMESH_COLOR_PLAIN
+  VKMESH_VEC4(none);     ///< of elements without a value
+  VKMESH_VEC4(flipped);  ///< of back faces
+  VKMESH_VEC4(edge);     ///< of the triangles' edges: sRGB
   VKMESH_FLOAT value_low;
-  VKMESH_FLOAT value_scale;       ///< 1 / (high - low)
+  VKMESH_FLOAT value_scale;  ///< 1 / (high - low)
   VKMESH_UINT element;
   VKMESH_UINT flags;
-  VKMESH_FLOAT point_radius;      ///< pixels
-  VKMESH_FLOAT splat_scale;       ///< times the spacing of the points is a splat's radius
-  VKMESH_FLOAT nearest;           ///< depth along the view of the nearest point
-  VKMESH_FLOAT depth;             ///< from there to the farthest
-  VKMESH_FLOAT half_width;        ///< of the picture, pixels
+  VKMESH_FLOAT point_radius;  ///< pixels
+  VKMESH_FLOAT splat_scale;   ///< times the spacing of the points is a splat's radius
+  VKMESH_FLOAT nearest;       ///< depth along the view of the nearest point
+  VKMESH_FLOAT depth;         ///< from there to the farthest
+  VKMESH_FLOAT half_width;    ///< of the picture, pixels
   VKMESH_FLOAT half_height;
-  VKMESH_FLOAT edge_width;        ///< pixels
-  VKMESH_FLOAT line_bias;         ///< what brings lines nearer: added to z in clip space
-  VKMESH_UINT perspective;        ///< 1, or 0 for a parallel projection
+  VKMESH_FLOAT edge_width;  ///< pixels
+  VKMESH_FLOAT line_bias;   ///< what brings lines nearer: added to z in clip space
+  VKMESH_UINT perspective;  ///< 1, or 0 for a parallel projection
   VKMESH_UINT unused[3];
-  VKMESH_TABLE(table, 256);       ///< the colour table
+  VKMESH_TABLE(table, 256);  ///< the colour table
 };
 
 #ifndef __cplusplus
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer DrawFloats { float at[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer DrawUints { uint at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer DrawFloats {
+  float at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer DrawUints {
+  uint at[];
+};
 layout(push_constant, std430) uniform PushConstants {
 #else
 struct DrawParams {
 #endif
   VKMESH_ADDRESS(DrawView) view;
   VKMESH_ADDRESS(DrawFloats) positions;  ///< 3 a point
-  VKMESH_ADDRESS(DrawUints) corners;     ///< 3 a triangle, or 2 an edge; null: each corner has its own position
-  VKMESH_ADDRESS(DrawFloats) normals;    ///< 3 a point; null: none
-  VKMESH_ADDRESS(DrawUints) values;      ///< 1 an element, float or bytes; null: none
-  VKMESH_ADDRESS(DrawUints) hidden;      ///< bits 0..2 of a triangle: its edges that are none of the polygon; null: none
-  VKMESH_ADDRESS(DrawFloats) spacing;    ///< 1 a point
-  VKMESH_UINT color;                     ///< of lines: four bytes
-  VKMESH_FLOAT width;                    ///< of lines: pixels
+  VKMESH_ADDRESS(DrawUints) corners;   ///< 3 a triangle, or 2 an edge; null: each corner has its own position
+  VKMESH_ADDRESS(DrawFloats) normals;  ///< 3 a point; null: none
+  VKMESH_ADDRESS(DrawUints) values;    ///< 1 an element, float or bytes; null: none
+  VKMESH_ADDRESS(DrawUints)
+  hidden;  ///< bits 0..2 of a triangle: its edges that are none of the polygon; null: none
+  VKMESH_ADDRESS(DrawFloats) spacing;  ///< 1 a point
+  VKMESH_UINT color;                   ///< of lines: four bytes
+  VKMESH_FLOAT width;                  ///< of lines: pixels
 #ifndef __cplusplus
-} p;
+}
+p;
 #else
 };
 static_assert(sizeof(DrawParams) == 64 && sizeof(DrawView) == 64 + 10 * 16 + 16 * 4 + 4096);

@@ -1,5 +1,5 @@
-// Push constants of every kernel, declared once for GLSL and C++. Addresses come after the two counts, so that each is
-// 8-byte aligned in both languages; engine/src asserts the sizes.
+// Push constants of every kernel, declared once for GLSL and C++. Addresses come after the two counts, so
+// that each is 8-byte aligned in both languages; engine/src asserts the sizes.
 #ifndef VKMESH_PARAMS_H
 #define VKMESH_PARAMS_H
 
@@ -38,10 +38,10 @@ struct TrianglesParams {
 struct VertexNormalsParams {
   VKMESH_UINT first;
   VKMESH_UINT count;
-  VKMESH_FLOATS areas;           ///< 3 a face, from triangle_areas
-  VKMESH_UINTS corner_offsets;   ///< vertices + 1
+  VKMESH_FLOATS areas;          ///< 3 a face, from triangle_areas
+  VKMESH_UINTS corner_offsets;  ///< vertices + 1
   VKMESH_UINTS corner_half_edges;
-  VKMESH_FLOATS normals;         ///< 3 a vertex: written
+  VKMESH_FLOATS normals;  ///< 3 a vertex: written
 };
 
 /// laplacian_smoothing.comp: i is a vertex.
@@ -50,9 +50,9 @@ struct LaplacianSmoothingParams {
   VKMESH_UINT count;
   VKMESH_UINTS neighbour_offsets;  ///< vertices + 1
   VKMESH_UINTS neighbour_ids;
-  VKMESH_UINTS fixed_bits;         ///< bit i % 32 of word i / 32: vertex i stays (read when use_fixed is 1)
-  VKMESH_FLOATS source;            ///< 3 a vertex
-  VKMESH_FLOATS target;            ///< 3 a vertex: written
+  VKMESH_UINTS fixed_bits;  ///< bit i % 32 of word i / 32: vertex i stays (read when use_fixed is 1)
+  VKMESH_FLOATS source;     ///< 3 a vertex
+  VKMESH_FLOATS target;     ///< 3 a vertex: written
   VKMESH_FLOAT lambda;
   VKMESH_UINT use_fixed;
 };
@@ -63,17 +63,17 @@ struct DihedralAnglesParams {
   VKMESH_UINT count;
   VKMESH_FLOATS normals;  ///< 3 a face, from triangle_normals
   VKMESH_UINTS twins;
-  VKMESH_FLOATS angles;   ///< 1 a half-edge: written
+  VKMESH_FLOATS angles;  ///< 1 a half-edge: written
 };
 
 /// vertex_maxima.comp: i is a vertex.
 struct VertexMaximaParams {
   VKMESH_UINT first;
   VKMESH_UINT count;
-  VKMESH_FLOATS angles;          ///< 1 a half-edge of a triangle mesh
-  VKMESH_UINTS corner_offsets;   ///< vertices + 1
+  VKMESH_FLOATS angles;         ///< 1 a half-edge of a triangle mesh
+  VKMESH_UINTS corner_offsets;  ///< vertices + 1
   VKMESH_UINTS corner_half_edges;
-  VKMESH_FLOATS maxima;          ///< 1 a vertex: written
+  VKMESH_FLOATS maxima;  ///< 1 a vertex: written
 };
 
 /// canary.comp: i is a case.

@@ -3,22 +3,18 @@
 #include <limits>
 #include <numbers>
 
+#include <glm/geometric.hpp>
+
 #include <vkmesh/camera.h>
 
 namespace vkmesh {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using glm::cross;
+using glm::dot;
+using glm::length;
 
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(const DVec3& v) {
-  return std::sqrt(dot(v, v));
-}
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Extremes of the points along an axis, tilted by `slope` against the view: with 0 plain coordinates, with
 /// the tangent of half the field of view those of the planes through the picture's edges.

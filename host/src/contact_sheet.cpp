@@ -138,9 +138,16 @@ Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t colu
       }
     }
     columns = std::min(columns, cells.size());
+    // Each row is as high as its highest picture: only rows with a legend need the room for one.
     const std::size_t rows = (cells.size() + columns - 1) / columns;
+    std::vector<std::uint32_t> row_pictures(rows, 0);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      row_pictures[i / columns] = std::max(row_pictures[i / columns], cells[i].picture.height());
+    std::vector<std::int64_t> row_top(rows + 1, 0);
+    for (std::size_t r = 0; r < rows; ++r)
+      row_top[r + 1] = row_top[r] + row_pictures[r] + (cell_height - height);
     const std::uint64_t sheet_width = std::uint64_t{width} * columns;
-    const std::uint64_t sheet_height = static_cast<std::uint64_t>(cell_height) * rows;
+    const auto sheet_height = static_cast<std::uint64_t>(row_top[rows]);
     if (sheet_width > kMaxPictureSide || sheet_height > kMaxPictureSide)
       return fail(ErrorCode::kUsage, "a contact sheet of " + std::to_string(sheet_width) + " by " +
                                          std::to_string(sheet_height) + " pixels is too large");
@@ -149,9 +156,9 @@ Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t colu
     const Color ink = ink_on(background);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::int64_t x = static_cast<std::int64_t>(i % columns) * width;
-      std::int64_t y = static_cast<std::int64_t>(i / columns) * cell_height;
+      std::int64_t y = row_top[i / columns];
       paste(sheet, cells[i].picture, x, y);
-      y += height + 2 * scale;
+      y += row_pictures[i / columns] + 2 * scale;
       for (const std::string& text : cells[i].caption) {
         const std::string fitting = text_that_fits(text, width - 8 * scale, scale);
         draw_text(sheet, x + (width - text_width(fitting, scale)) / 2, y, fitting, ink, scale);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <vkmesh/surface_distance.h>
 
@@ -16,15 +17,11 @@
 namespace vkmesh {
 namespace {
 
+using glm::cross;
+using glm::dot;
+
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kSamplesBetweenReports = 8192;
-
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 struct Triangle {
   DVec3 a, b, c;

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include <vkmesh/passes/arithmetic.h>
 #include <vkmesh/surface_values.h>
 
@@ -13,17 +15,11 @@
 namespace vkmesh {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+using glm::cross;
+using glm::dot;
+using glm::length;
 
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(const DVec3& v) {
-  return std::sqrt(dot(v, v));
-}
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 Result<void> require_points(const IndexedFaceSet& mesh) {
   const auto bad = std::find_if(mesh.corners.begin(), mesh.corners.end(),

@@ -72,7 +72,8 @@ void require_round_trip(Context& context, std::size_t bytes) {
 }  // namespace
 
 TEST_CASE("data goes to a buffer and back, directly and in rounds of staging") {
-  for (const std::size_t bytes : {0, 1, 3, 1000, 1001, 10007}) require_round_trip(test_context(), bytes);
+  for (const std::size_t bytes : {0u, 1u, 3u, 1000u, 1001u, 10007u})
+    require_round_trip(test_context(), bytes);
 
   ContextOptions options = device_options();
   options.force_staging = true;
@@ -82,7 +83,8 @@ TEST_CASE("data goes to a buffer and back, directly and in rounds of staging") {
   auto buffer = Buffer::create(**staged, 100);
   REQUIRE(buffer);
   CHECK(buffer->mapped().empty());
-  for (const std::size_t bytes : {0, 1, 3, 999, 1000, 1001, 10007}) require_round_trip(**staged, bytes);
+  for (const std::size_t bytes : {0u, 1u, 3u, 999u, 1000u, 1001u, 10007u})
+    require_round_trip(**staged, bytes);
 }
 
 TEST_CASE("memory that is not coherent is flushed and invalidated") {

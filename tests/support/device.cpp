@@ -56,8 +56,9 @@ class DeviceListener : public Catch::TestEventListenerBase {
 
   void testRunStarting(const Catch::TestRunInfo& info) override {
     Catch::TestEventListenerBase::testRunStarting(info);
-    // Stays loaded, so that the leak checker knows at the end whose memory it finds.
-    (void)dlopen("libVkLayer_khronos_validation.so", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    // They stay loaded, so that the leak checker knows at the end whose memory it finds.
+    for (const char* library : {"libVkLayer_khronos_validation.so", "libvulkan_lvp.so"})
+      (void)dlopen(library, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     const auto opened = open_shared_context();
     if (!opened) {
       std::cerr << "device: none: " << opened.error().describe() << std::endl;

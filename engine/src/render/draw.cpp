@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 #include <vkmesh/engine/draw.h>
 
 #include "catching.h"
@@ -15,16 +17,14 @@
 namespace vkmesh {
 namespace {
 
+using glm::dot;
+
 using detail::DrawShaders;
 
 /// Without the feature fullDrawIndexUint32 that is how far an index buffer reaches.
 constexpr std::uint32_t kMaxIndexedPoints = std::uint32_t{1} << 24;
 /// How much nearer lines are drawn than the surface below them, as a share of the distance or the depth.
 constexpr double kLineBias = 2e-3;
-
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 void put(float (&to)[4], const DVec3& xyz) {
   to[0] = static_cast<float>(xyz.x);

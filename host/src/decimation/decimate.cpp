@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include <vkmesh/decimation/addressable_heap.h>
 #include <vkmesh/decimation/decimate.h>
 
@@ -15,19 +17,15 @@
 namespace vkmesh {
 namespace {
 
+using glm::cross;
+using glm::dot;
+
 using detail::CollapseMesh;
 using detail::Quadric;
 
 constexpr std::size_t kCollapsesBetweenReports = 4096;
 /// A triangle of less area than this share of its squared sides has no reliable normal.
 constexpr double kDegenerate = 1e-7;
-
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 enum class Legality { kLegal, kLink, kFoldOver, kError };
 
