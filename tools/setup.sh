@@ -11,7 +11,7 @@ packages=(
 )
 case "${1:-}" in
   demo) ;;
-  test) packages+=(catch2 clang clang-format libmeshoptimizer-dev libopenmesh-dev spirv-tools vulkan-validationlayers) ;;
+  test) packages+=(catch2 clang clang-format libclang-rt-14-dev libmeshoptimizer-dev libopenmesh-dev spirv-tools vulkan-validationlayers) ;;
   *)
     echo "usage: tools/setup.sh demo|test" >&2
     exit 2

@@ -131,7 +131,7 @@ TEST_CASE("smoothing with λ = 1 puts each vertex on the mean of its neighbours"
                                             {.lambda = 1.0f, .iterations = 1});
   REQUIRE(smoothed);
   CHECK(length(DVec3((*smoothed)[4]) - DVec3(1.0, 1.0, 0.0)) < 1e-6);
-  for (const std::size_t v : {0, 1, 2, 3, 5, 6, 7, 8}) CHECK((*smoothed)[v] == set.points[v]);
+  for (const std::size_t v : {0u, 1u, 2u, 3u, 5u, 6u, 7u, 8u}) CHECK((*smoothed)[v] == set.points[v]);
 }
 
 TEST_CASE("smoothing: iterations compose, zero iterations change nothing, isolated vertices stay") {
