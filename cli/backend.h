@@ -13,6 +13,10 @@
 
 #include "common.h"
 
+namespace vkmesh {
+struct ContextOptions;
+}
+
 namespace vkmesh::cli {
 
 /// The passes, as the functions of the same names in vkmesh/passes/. All backends give the same bits, and
@@ -41,6 +45,10 @@ class Backend {
 void use_host(Job& job);
 
 #ifdef VKMESH_HAS_VULKAN
+/// How every subcommand opens a device. In debug builds the validation layer watches, and speaks on standard
+/// error.
+[[nodiscard]] ContextOptions context_options(const std::string& device);
+
 /// A Vulkan device, chosen as ContextOptions::device is. Errors: kNoDevice, kOutOfMemory.
 [[nodiscard]] Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device);
 #endif

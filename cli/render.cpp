@@ -20,6 +20,7 @@
 #include <vkmesh/surface_values.h>
 #include <vkmesh/triangulate.h>
 
+#include "backend.h"
 #include "commands.h"
 
 namespace vkmesh::cli {
@@ -109,8 +110,7 @@ Result<Plan> plan_of(const RenderOptions& options) {
 
 Result<std::unique_ptr<Context>> open_context(Job& job) {
   return job.timed("open", [&]() -> Result<std::unique_ptr<Context>> {
-    ContextOptions options;
-    options.device = job.options().device;
+    ContextOptions options = context_options(job.options().device);
     // Pictures are the same on one device; that other devices draw the same bits is not promised.
     options.skip_exactness_check = true;
     if (options.device == "cpu")

@@ -82,10 +82,21 @@ class VulkanBackend : public Backend {
 
 }  // namespace
 
-Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device) {
+ContextOptions context_options(const std::string& device) {
   ContextOptions options;
   options.device = device;
-  VKMESH_TRY(std::unique_ptr<Context> context, job.timed("open", [&] { return Context::create(options); }));
+#ifndef NDEBUG
+  options.validation = true;
+  options.on_validation_message = [](const std::string& message) {
+    std::fprintf(stderr, "validation: %s\n", message.c_str());
+  };
+#endif
+  return options;
+}
+
+Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device) {
+  VKMESH_TRY(std::unique_ptr<Context> context,
+             job.timed("open", [&] { return Context::create(context_options(device)); }));
   const DeviceInfo& info = context->info();
   job.json()["device"] = {{"name", info.name}, {"driver", info.driver}, {"type", name_of(info.type)}};
   job.row("device", info.name + "; " + info.driver + "; " + name_of(info.type));
