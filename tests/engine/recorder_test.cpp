@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(VKMESH_ADDRESS_SANITIZER)
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -304,7 +304,7 @@ TEST_CASE("work that takes too long is an error, and can be waited for again") {
 }
 
 TEST_CASE("what a device that never answers may still use is not destroyed") {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(VKMESH_ADDRESS_SANITIZER)
   __lsan_disable();  // the point of this test is a leak
 #endif
   FakeLoader loader;
@@ -323,7 +323,7 @@ TEST_CASE("what a device that never answers may still use is not destroyed") {
   CHECK(context->device().abandoned);
   CHECK(context->allocated_bytes() > 0);
   context.reset();
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(VKMESH_ADDRESS_SANITIZER)
   __lsan_enable();
 #endif
 }

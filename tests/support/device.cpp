@@ -13,7 +13,7 @@
 #include <catch2/catch.hpp>
 #include <dlfcn.h>
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(VKMESH_ADDRESS_SANITIZER)
 // The layer (1.3.239) keeps some of what it notes of each instance and shader. Objects that the engine
 // forgets to destroy are not hidden by this: the layer names them.
 extern "C" const char* __lsan_default_suppressions();
