@@ -17,11 +17,14 @@ using ChannelValues =
 
 /// A named attribute: `components` scalars for each element, one element after another.
 /// Names with a meaning everywhere: "normal" (3 components), "uv" (2), "color" (3 or 4; 0..255 for uint8,
-/// 0..1 for float), "quality" (1). Any other name is carried as it is.
+/// 0..1 for float), "quality" (1), "material" and "group" (1, whole numbers that number `labels`). Any other
+/// name is carried as it is.
 struct Channel {
   std::string name;
   unsigned components = 1;
   ChannelValues values;
+  /// What the values 0, 1, … stand for, where they number names (OBJ's usemtl and g); else empty.
+  std::vector<std::string> labels = {};
 
   /// Scalars held, elements × components.
   [[nodiscard]] std::size_t scalar_count() const {
