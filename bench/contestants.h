@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ struct Contestant {
   std::function<Surface()> surface = {};
   /// Takes tens of seconds.
   bool slow = false;
+  /// The size of the file that is read; 0 where none is.
+  std::size_t bytes = 0;
 };
 
 /// A peer and its version, for the report.
@@ -53,7 +56,32 @@ struct Programme {
   std::vector<Library> libraries;
 };
 
+/// The mesh of the benchmark as files, text and binary, in a folder that goes away with this.
+class ReadingFiles {
+ public:
+  struct File {
+    std::string step;
+    std::filesystem::path path;
+    std::size_t size = 0;
+  };
+
+  static Result<ReadingFiles> write(const IndexedFaceSet& mesh);
+  ReadingFiles(ReadingFiles&& other) noexcept;
+  ReadingFiles& operator=(ReadingFiles&&) = delete;
+  ~ReadingFiles();
+
+  [[nodiscard]] const std::vector<File>& all() const { return all_; }
+
+ private:
+  ReadingFiles() = default;
+
+  std::filesystem::path folder_;
+  std::vector<File> all_;
+};
+
 namespace step {
+inline const std::string kReadAscii = "read ascii PLY";
+inline const std::string kReadBinary = "read binary PLY";
 inline const std::string kConstruction = "half-edge construction";
 inline const std::string kNeighbours = "neighbour lists";
 inline const std::string kNormals = "vertex normals";
@@ -62,10 +90,11 @@ inline const std::string kUpload = "upload";
 inline const std::string kDecimation = "decimation";
 }  // namespace step
 
-// Each adds its rows. `input` must outlive the programme.
+// Each adds its rows. `input` and `files` must outlive the programme.
+void add_reading(Programme& programme, const ReadingFiles& files);
 Result<void> add_host(Programme& programme, const Input& input);
 Result<void> add_device(Programme& programme, const Input& input, const std::string& device);
-void add_openmesh(Programme& programme, const Input& input);
+void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& files);
 void add_meshoptimizer(Programme& programme, const Input& input);
 
 /// Milliseconds since it was made.

@@ -34,8 +34,8 @@ Result<void> add_device(Programme& programme, const Input& input, const std::str
   programme.libraries.push_back({info.name, info.driver});
   const std::string name = "vkmesh, " + device;
 
-  VKMESH_TRY(Consolidated consolidated, consolidate(input.mesh));
-  const auto connectivity = std::make_shared<HalfEdgeMesh>(std::move(consolidated.mesh));
+  VKMESH_TRY(HalfEdgeMesh half_edges, to_half_edge_mesh(input.mesh));
+  const auto connectivity = std::make_shared<HalfEdgeMesh>(std::move(half_edges));
   const MeshPasses passes{.vertex_normals = true, .laplacian_smoothing = true};
   VKMESH_TRY(DeviceMesh uploaded, DeviceMesh::create(*context, *connectivity, input.mesh.points, passes));
   // Named after the context in each capture, so that it goes before the context does.

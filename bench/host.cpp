@@ -27,14 +27,14 @@ Result<double> timed(Work&& work) {
 
 Result<void> add_host(Programme& programme, const Input& input) {
   const std::string name = "vkmesh, CPU";
-  VKMESH_TRY(Consolidated consolidated, consolidate(input.mesh));
-  const auto mesh = std::make_shared<HalfEdgeMesh>(std::move(consolidated.mesh));
+  VKMESH_TRY(HalfEdgeMesh half_edges, to_half_edge_mesh(input.mesh));
+  const auto mesh = std::make_shared<HalfEdgeMesh>(std::move(half_edges));
   VKMESH_TRY(NodeNeighbours lists, node_neighbours(*mesh));
   const auto neighbours = std::make_shared<NodeNeighbours>(std::move(lists));
   const auto decimated = std::make_shared<Decimated>();
 
   programme.contestants.push_back(
-      {step::kConstruction, name, [&input] { return timed([&] { return consolidate(input.mesh); }); }});
+      {step::kConstruction, name, [&input] { return timed([&] { return to_half_edge_mesh(input.mesh); }); }});
   programme.contestants.push_back(
       {step::kNeighbours, name, [mesh] { return timed([&] { return node_neighbours(*mesh); }); }});
   programme.contestants.push_back({step::kNormals, name, [&input, mesh] {

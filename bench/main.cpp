@@ -45,15 +45,16 @@ Result<Input> read_input(const Options& options) {
   return input;
 }
 
-Result<Programme> programme_for(const Options& options, const Input& input) {
+Result<Programme> programme_for(const Options& options, const Input& input, const ReadingFiles& files) {
   Programme programme;
   programme.libraries.push_back({"vkmesh", VKMESH_VERSION});
+  add_reading(programme, files);
   VKMESH_CHECK(add_host(programme, input));
 #ifdef VKMESH_BENCH_DEVICE
   if (options.device != "none") VKMESH_CHECK(add_device(programme, input, options.device));
 #endif
 #ifdef VKMESH_BENCH_OPENMESH
-  add_openmesh(programme, input);
+  add_openmesh(programme, input, files);
 #endif
 #ifdef VKMESH_BENCH_MESHOPTIMIZER
   add_meshoptimizer(programme, input);
@@ -83,7 +84,7 @@ Result<Report> measure(const Options& options, const Input& input, const Program
   report.machine = describe_machine();
   report.libraries = programme.libraries;
   for (const Contestant& contestant : programme.contestants)
-    report.rows.push_back({contestant.step, contestant.name, {}, {}});
+    report.rows.push_back({contestant.step, contestant.name, {}, {}, contestant.bytes});
 
   // Step by step; within a step A B A B, so that what disturbs the machine disturbs all alike.
   for (std::size_t begin = 0, end = 0; begin < programme.contestants.size(); begin = end) {
@@ -125,7 +126,8 @@ Result<void> write(const std::string& path, const std::string& text) {
 
 Result<void> run(const Options& options) {
   VKMESH_TRY(const Input input, read_input(options));
-  VKMESH_TRY(const Programme programme, programme_for(options, input));
+  VKMESH_TRY(const ReadingFiles files, ReadingFiles::write(input.mesh));
+  VKMESH_TRY(const Programme programme, programme_for(options, input, files));
   VKMESH_TRY(const Report report, measure(options, input, programme));
   std::fputs(to_text(report).c_str(), stdout);
   if (!options.json.empty()) VKMESH_CHECK(write(options.json, to_json(report).dump(2) + "\n"));

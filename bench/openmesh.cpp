@@ -1,6 +1,8 @@
 // OpenMesh: its triangle mesh of default traits, and the tools that come with it.
 #include <memory>
 
+// Before the mesh: the reader of files is told of mesh types by it.
+#include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
@@ -40,12 +42,26 @@ Surface surface_of(const Mesh& mesh) {
 
 }  // namespace
 
-void add_openmesh(Programme& programme, const Input& input) {
+void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& files) {
   const std::string name = "OpenMesh";
   programme.libraries.push_back({name, std::to_string(OM_GET_VER) + "." + std::to_string(OM_GET_MAJ)});
   const std::shared_ptr<Mesh> mesh = build(input.mesh);
   const auto decimated = std::make_shared<Surface>();
 
+  for (const ReadingFiles::File& file : files.all())
+    programme.contestants.push_back(
+        {file.step,
+         name,
+         [&file]() -> Result<double> {
+           Mesh read;
+           const Stopwatch watch;
+           if (!OpenMesh::IO::read_mesh(read, file.path.string()))
+             return fail(ErrorCode::kUnreadable, "OpenMesh cannot read it", {file.path.string(), {}, {}});
+           return watch.milliseconds();
+         },
+         {},
+         false,
+         file.size});
   programme.contestants.push_back({step::kConstruction, name, [&input]() -> Result<double> {
                                      const Stopwatch watch;
                                      const auto built = build(input.mesh);

@@ -25,8 +25,11 @@ struct Row {
   std::string name;
   std::vector<double> milliseconds;  ///< One for each repetition.
   std::optional<DecimationError> error;
+  std::size_t bytes = 0;  ///< Of the file that is read; 0 where none is.
 
   [[nodiscard]] double median() const;
+  /// 10^6 bytes a second; unset where no file is read.
+  [[nodiscard]] std::optional<double> megabytes_per_second() const;
 };
 
 struct Report {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <system_error>
 
@@ -66,6 +67,33 @@ Json counts_of(const IndexedFaceSet& mesh, const std::string& file, FileFormat f
           {"point_attributes", names_of(mesh.point_channels)},
           {"corner_attributes", names_of(mesh.corner_channels)},
           {"face_attributes", names_of(mesh.face_channels)}};
+}
+
+/// What consolidation found and did, as "report" holds it.
+Json to_json(const ConsolidateReport& report) {
+  return {{"points", report.points},
+          {"faces", report.faces},
+          {"edges", report.edges},
+          {"boundary_edges", report.boundary_edges},
+          {"isolated_points", report.isolated_points},
+          {"degenerate_faces", report.degenerate_faces},
+          {"non_manifold_edges", report.non_manifold_edges},
+          {"misoriented_edges", report.misoriented_edges},
+          {"non_manifold_vertices", report.non_manifold_vertices},
+          {"manifold", report.manifold()},
+          {"welded_points", report.welded_points},
+          {"largest_weld_move", report.largest_weld_move},
+          {"weld_seams", report.weld_seams},
+          {"removed_degenerate_faces", report.removed_degenerate_faces},
+          {"removed_duplicate_faces", report.removed_duplicate_faces},
+          {"mended_polygons", report.mended_polygons},
+          {"removed_points", report.removed_points},
+          {"split_edges", report.split_edges},
+          {"split_points", report.split_points},
+          {"added_points", report.added_points},
+          {"flipped_faces", report.flipped_faces},
+          {"cut_components", report.cut_components},
+          {"cut_edges", report.cut_edges}};
 }
 
 std::string file_row(const IndexedFaceSet& mesh, const std::string& file, FileFormat format,
@@ -184,26 +212,31 @@ Result<void> check_place(const std::string& file) {
   return {};
 }
 
-Result<HalfEdgeMesh> Job::triangle_half_edges(const IndexedFaceSet& mesh) {
+Result<HalfEdgeMesh> Job::consolidate(IndexedFaceSet& mesh) {
   return timed("consolidate", [&]() -> Result<HalfEdgeMesh> {
-    const auto judged = [&](Result<Consolidated> result) -> Result<HalfEdgeMesh> {
-      VKMESH_TRY(Consolidated consolidated, std::move(result));
-      if (json_["report"].is_null()) json_["report"] = to_json(consolidated.report);
-      return std::move(consolidated.mesh);
-    };
-    Result<HalfEdgeMesh> result;
-    if (mesh.is_triangles()) {
-      result = judged(consolidate(mesh));
-    } else {
-      // Judged before the polygons are cut, so that the report speaks of the faces of the file.
-      VKMESH_TRY(const ConsolidateReport report, survey(mesh));
-      if (!report.manifold()) return fail(ErrorCode::kUnsuitable, report.defects, {options_.input, {}, {}});
-      json_["report"] = to_json(report);
-      VKMESH_TRY(const Triangulated cut, triangulate(mesh));
-      result = judged(consolidate(cut.mesh));
+    auto result = vkmesh::consolidate(std::move(mesh), options_.consolidation, progress("consolidating"));
+    if (!result) {
+      if (result.error().where.file.empty()) result.error().where.file = options_.input;
+      return tl::unexpected<Error>(std::move(result.error()));
     }
-    if (!result && result.error().where.file.empty()) result.error().where.file = options_.input;
-    return result;
+    json_["report"] = to_json(result->report);
+    for (std::string& sentence : result->report.repairs()) row("mended", std::move(sentence));
+    mesh = std::move(result->face_set);
+    return std::move(result->mesh);
+  });
+}
+
+Result<HalfEdgeMesh> Job::consolidate_triangles(IndexedFaceSet& mesh) {
+  VKMESH_TRY(HalfEdgeMesh half_edges, consolidate(mesh));
+  if (mesh.is_triangles()) return half_edges;
+  return timed("consolidate", [&]() -> Result<HalfEdgeMesh> {
+    VKMESH_TRY(const Triangulated cut, triangulate(mesh));
+    auto triangles = to_half_edge_mesh(cut.mesh);
+    if (!triangles) {
+      triangles.error().where.file = options_.input;
+      triangles.error().message = "cut into triangles, the polygons are " + triangles.error().message;
+    }
+    return triangles;
   });
 }
 
@@ -249,13 +282,15 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
   if (has_input)
     command
         .add_option("IN", options.input,
-                    "Mesh to read: PLY, OBJ, OFF or STL, also gzipped; - for standard input")
+                    "Mesh to read: PLY, OBJ, OFF, STL, glTF (.gltf, .glb), OpenInventor or VRML, also\n"
+                    "gzipped; - for standard input")
         ->type_name("")
         ->required();
   if (has_output)
     command
         .add_option("OUT", options.output,
-                    "Mesh to write: .ply, .obj, .off, .stl, also with .gz; - for a PLY on standard output")
+                    "Mesh to write: .ply, .obj, .off, .stl, .gltf, .glb, .iv, .wrl (VRML 2), .vrml1, also\n"
+                    "with .gz; - for a PLY on standard output")
         ->type_name("")
         ->required();
   command
@@ -271,6 +306,34 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
   command.add_flag("--json", options.json,
                    "Print one JSON object on standard output, and nothing else there");
   command.add_flag("--quiet", options.quiet, "Print nothing but errors");
+}
+
+void add_consolidate_options(CLI::App& command, CommonOptions& options) {
+  ConsolidateOptions& consolidation = options.consolidation;
+  const auto weld = [&consolidation](const std::string& text) {
+    const bool relative = text.ends_with('%');
+    double value = 0;
+    const char* const to = text.data() + text.size() - (relative ? 1 : 0);
+    const auto [end, error] = std::from_chars(text.data(), to, value);
+    if (error != std::errc() || end != to || !(value >= 0) || value > std::numeric_limits<double>::max())
+      throw CLI::ValidationError("--weld",
+                                 "'" + text + "' is no length, nor a share of the diagonal like 0.01%");
+    consolidation.weld = WeldOptions{relative ? value / 100 : value, relative};
+  };
+  command
+      .add_option_function<std::string>(
+          "--weld", weld,
+          "First make points at most this far apart one: a length in units of the file, or a\n"
+          "share of the bounding box's diagonal like 0.01%; 0 joins equal coordinates only")
+      ->type_name("T");
+  command.add_flag("--strict", consolidation.strict,
+                   "Refuse a mesh that is no oriented manifold (exit code 4), instead of mending it");
+  command.add_flag_callback(
+      "--drop-isolated", [&consolidation] { consolidation.keep_isolated_points = false; },
+      "Leave out points that no face uses");
+  command.add_flag_callback(
+      "--refuse-non-orientable", [&consolidation] { consolidation.cut_non_orientable = false; },
+      "Refuse a surface like the Moebius strip, instead of cutting it open along a seam");
 }
 
 CLI::Validator number_between(double low, double high) {
@@ -321,22 +384,6 @@ std::string brief(double x) {
 
 std::string count_of(std::size_t n, const std::string& singular, const std::string& plural) {
   return grouped(n) + " " + (n == 1 ? singular : plural.empty() ? singular + "s" : plural);
-}
-
-Json to_json(const ConsolidateReport& report) {
-  // Fans are counted once every edge has two faces that agree; before that the number would mean nothing.
-  const bool edges_in_order =
-      report.degenerate_faces + report.non_manifold_edges + report.misoriented_edges == 0;
-  return {{"points", report.points},
-          {"faces", report.faces},
-          {"edges", report.edges},
-          {"boundary_edges", report.boundary_edges},
-          {"isolated_points", report.isolated_points},
-          {"degenerate_faces", report.degenerate_faces},
-          {"non_manifold_edges", report.non_manifold_edges},
-          {"misoriented_edges", report.misoriented_edges},
-          {"non_manifold_vertices", edges_in_order ? Json(report.non_manifold_vertices) : Json(nullptr)},
-          {"manifold", report.manifold()}};
 }
 
 }  // namespace vkmesh::cli

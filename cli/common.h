@@ -30,6 +30,7 @@ struct CommonOptions {
   std::string progress = "auto";
   bool json = false;
   bool quiet = false;
+  ConsolidateOptions consolidation;
 };
 
 /// After this, interrupt and termination signals make interrupted() true, and a closed pipe is an ordinary
@@ -85,8 +86,11 @@ class Job {
   /// Finds out whether the output can be written at all, before time is spent on it. No output given: no
   /// error.
   [[nodiscard]] Result<void> check_output();
-  /// Triangulates polygons where there are some, and builds half-edges. `mesh` keeps its polygons.
-  [[nodiscard]] Result<HalfEdgeMesh> triangle_half_edges(const IndexedFaceSet& mesh);
+  /// Makes the mesh an oriented manifold, as the options of add_consolidate_options() say, and reports what
+  /// was done. The half-edges are those of its faces.
+  [[nodiscard]] Result<HalfEdgeMesh> consolidate(IndexedFaceSet& mesh);
+  /// The same, with the half-edges of the triangles into which polygons are cut; `mesh` keeps its polygons.
+  [[nodiscard]] Result<HalfEdgeMesh> consolidate_triangles(IndexedFaceSet& mesh);
   /// Writes the output, and reports its counts.
   [[nodiscard]] Result<void> write(const IndexedFaceSet& mesh, bool ascii = false);
 
@@ -121,6 +125,9 @@ class Job {
 /// Adds IN, and OUT when asked for, and the options that all subcommands have.
 void add_common_options(CLI::App& command, CommonOptions& options, bool has_input, bool has_output);
 
+/// Adds --weld, --strict and the like, for subcommands that consolidate what they read.
+void add_consolidate_options(CLI::App& command, CommonOptions& options);
+
 /// Finds out whether a file can be written there at all. "-" can. Errors: kNotWritable.
 [[nodiscard]] Result<void> check_place(const std::string& file);
 
@@ -138,8 +145,5 @@ void print_error(const Error& error, bool json);
 /// "1 face", "12 faces".
 [[nodiscard]] std::string count_of(std::size_t n, const std::string& singular,
                                    const std::string& plural = {});
-
-/// The counts of a survey, as "report" holds them.
-[[nodiscard]] Json to_json(const ConsolidateReport& report);
 
 }  // namespace vkmesh::cli

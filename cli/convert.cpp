@@ -9,6 +9,7 @@ namespace {
 
 struct ConvertOptions {
   bool triangulate = false;
+  bool as_is = false;
   bool ascii = false;
 };
 
@@ -16,6 +17,10 @@ Result<void> run(Job& job, const ConvertOptions& options) {
   use_host(job);
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  if (!options.as_is && mesh.face_count() > 0) {
+    VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate(mesh));
+    if (job.json()["report"]["manifold"] == true) job.row("manifold", "yes, compatibly oriented");
+  }
   if (options.triangulate && !mesh.is_triangles()) {
     const std::size_t before = mesh.face_count();
     VKMESH_TRY(Triangulated cut, job.timed("compute", [&] { return triangulate(mesh); }));
@@ -24,7 +29,8 @@ Result<void> run(Job& job, const ConvertOptions& options) {
   }
   job.json()["result"]["triangulated"] = options.triangulate;
   auto written = job.write(mesh, options.ascii);
-  if (!written && written.error().code == ErrorCode::kUnsuitable && !options.triangulate)
+  if (!written && written.error().code == ErrorCode::kUnsuitable && !options.triangulate &&
+      !mesh.is_triangles())
     written.error().message += "; --triangulate cuts them";
   return written;
 }
@@ -36,12 +42,17 @@ void add_convert(CLI::App& app, Program& program) {
   command->footer(
       "The extension of OUT names its format. Attributes that the format cannot hold are left out, and "
       "named.\n"
-      "The mesh is not judged: defects pass through.\n\n"
-      "Example:\n  vkmesh convert data/dragon/dragon_vrip.ply.gz dragon.obj");
+      "What is no oriented manifold is mended, and what was done is told: degenerate and duplicate faces go, "
+      "faces are turned\nto agree, edges of three or more faces and points where separate fans meet are "
+      "split. "
+      "No position changes but by --weld.\n\n"
+      "Example:\n  vkmesh convert data/dragon/dragon_vrip.ply.gz dragon.obj --weld 0.001%");
   add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<ConvertOptions>();
   command->add_flag("--triangulate", options->triangulate,
-                    "Cut polygons into triangles (STL holds only these)");
+                    "Cut polygons into triangles (STL and glTF hold only these)");
+  command->add_flag("--as-is", options->as_is, "Judge and mend nothing: defects pass through");
   command->add_flag("--ascii", options->ascii,
                     "Write text where the format has a binary form as well (PLY, STL)");
   command->callback([&program, options] {

@@ -12,7 +12,7 @@ Result<void> run(Job& job) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   VKMESH_TRY(std::vector<float> angles, backend->largest_dihedral_angles(half_edges, mesh.points));
 
   double sum = 0, largest = 0;
@@ -41,6 +41,7 @@ void add_curvature(CLI::App& app, Program& program) {
       "bytes.\n\n"
       "Example:\n  vkmesh curvature data/dragon/dragon_vrip.ply.gz curvature.ply");
   add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
   command->callback([&program] {
     program.command = "curvature";
     program.action = run;

@@ -2,33 +2,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
-#include <optional>
+#include <string>
+
+#include <vkmesh/topology.h>
 
 #include "backend.h"
 #include "commands.h"
 
 namespace vkmesh::cli {
 namespace {
-
-/// Pieces of the surface: sets of faces that are joined through shared points. O(corners · α).
-std::size_t component_count(const IndexedFaceSet& mesh) {
-  std::vector<std::uint32_t> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t p) {
-    while (parent[p] != p) p = parent[p] = parent[parent[p]];
-    return p;
-  };
-  std::vector<bool> used(mesh.points.size(), false);
-  for (std::size_t f = 0; f < mesh.face_count(); ++f)
-    for (const std::uint32_t corner : mesh.face(f)) {
-      used[corner] = true;
-      parent[root(corner)] = root(mesh.face(f)[0]);
-    }
-  std::size_t count = 0;
-  for (std::uint32_t p = 0; p < parent.size(); ++p) count += used[p] && parent[p] == p ? 1u : 0u;
-  return count;
-}
 
 /// Sum of the areas of the faces, each by its Newell vector. O(corners).
 double surface_area(const IndexedFaceSet& mesh) {
@@ -48,22 +30,61 @@ double surface_area(const IndexedFaceSet& mesh) {
   return sum;
 }
 
-struct Topology {
-  std::size_t components = 0;
-  std::size_t boundary_loops = 0;
-  std::int64_t euler = 0;
-  std::optional<std::int64_t> genus;
-};
+/// The signed volume inside a closed, oriented surface: a sum over the fans of its faces. O(corners).
+double enclosed_volume(const IndexedFaceSet& mesh) {
+  if (mesh.points.empty()) return 0;
+  const DVec3 origin(mesh.points[0]);
+  double sum = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    const DVec3 a = DVec3(mesh.points[face[0]]) - origin;
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const DVec3 b = DVec3(mesh.points[face[i]]) - origin, c = DVec3(mesh.points[face[i + 1]]) - origin;
+      sum += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+    }
+  }
+  return sum / 6;
+}
 
-Result<Topology> topology_of(const IndexedFaceSet& mesh, const ConsolidateReport& report) {
-  VKMESH_TRY(const Consolidated consolidated, consolidate(mesh));
-  Topology t;
-  t.components = component_count(mesh);
-  t.boundary_loops = consolidated.mesh.boundary_loops().size();
-  t.euler = static_cast<std::int64_t>(report.points - report.isolated_points) -
-            static_cast<std::int64_t>(report.edges) + static_cast<std::int64_t>(report.faces);
-  if (t.components == 1 && t.boundary_loops == 0) t.genus = (2 - t.euler) / 2;
-  return t;
+Json to_json(const Topology& t) {
+  return {{"points", t.points},
+          {"edges", t.edges},
+          {"faces", t.faces},
+          {"boundary_edges", t.boundary_edges},
+          {"boundary_loops", t.boundary_loops},
+          {"non_manifold_edges", t.non_manifold_edges},
+          {"non_manifold_vertices", t.non_manifold_vertices},
+          {"misoriented_edges", t.misoriented_edges},
+          {"euler_characteristic", t.euler_characteristic()},
+          {"genus", t.genus ? Json(*t.genus) : Json(nullptr)},
+          {"orientable", t.orientable},
+          {"oriented", t.oriented()},
+          {"closed", t.closed()},
+          {"manifold", t.manifold()}};
+}
+
+/// What a surface is, in a few words.
+std::string described(const Topology& t) {
+  return std::string(t.closed() ? "closed" : count_of(t.boundary_loops, "boundary loop")) + ", " +
+         (t.manifold() ? "" : "not manifold, ") + (t.orientable ? "" : "not orientable, ") +
+         "Euler characteristic " + std::to_string(t.euler_characteristic()) +
+         (t.genus ? ", genus " + std::to_string(*t.genus) : "");
+}
+
+/// What makes the surface no manifold, or its faces disagree.
+std::string defects_of(const Topology& t, const ElementDefects& d) {
+  std::string text;
+  const auto add = [&](std::size_t n, const char* one, const char* many) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + count_of(n, one, many);
+  };
+  add(d.degenerate_faces, "degenerate face", "degenerate faces");
+  add(d.duplicate_faces, "duplicate face", "duplicate faces");
+  add(t.non_manifold_edges, "edge with three or more faces", "edges with three or more faces");
+  add(t.non_manifold_vertices, "point where separate fans of faces meet",
+      "points where separate fans of faces meet");
+  add(t.misoriented_edges, "edge whose two faces disagree in orientation",
+      "edges whose two faces disagree in orientation");
+  return text;
 }
 
 std::string triple(const Vec3& p) {
@@ -80,8 +101,10 @@ std::string listed(const std::vector<Channel>& channels, const char* of) {
 Result<void> run(Job& job) {
   use_host(job);
   VKMESH_TRY(const IndexedFaceSet mesh, job.read());
-  VKMESH_TRY(const ConsolidateReport report, job.timed("consolidate", [&] { return survey(mesh); }));
-  job.json()["report"] = to_json(report);
+  VKMESH_TRY(const SurfaceTopology topology,
+             job.timed("consolidate", [&] { return surface_topology(mesh); }));
+  VKMESH_TRY(const ElementDefects defects, job.timed("consolidate", [&] { return element_defects(mesh); }));
+  const Topology& whole = topology.whole;
   Json& result = job.json()["result"];
 
   std::size_t largest = 0, triangles = 0;
@@ -89,8 +112,6 @@ Result<void> run(Job& job) {
     largest = std::max(largest, mesh.face(f).size());
     triangles += mesh.face(f).size() == 3 ? 1u : 0u;
   }
-  result["triangles"] = triangles;
-  result["largest_face"] = largest;
   if (mesh.face_count() == 0)
     job.row("faces", "none: a point cloud");
   else if (triangles == mesh.face_count())
@@ -104,30 +125,53 @@ Result<void> run(Job& job) {
         listed(mesh.face_channels, "faces")})
     if (!part.empty()) attributes += (attributes.empty() ? "" : "; ") + part;
   job.row("attributes", attributes.empty() ? "none" : attributes);
-  job.row("edges", grouped(report.edges) + ", " + grouped(report.boundary_edges) + " on the boundary");
-  if (report.isolated_points > 0)
-    job.row("isolated", count_of(report.isolated_points, "point") + " that no face uses");
+  job.row("edges", grouped(whole.edges) + ", " + grouped(whole.boundary_edges) + " on the boundary");
+  if (defects.isolated_points > 0)
+    job.row("isolated", count_of(defects.isolated_points, "point") + " that no face uses");
+  if (defects.duplicate_points > 0)
+    job.row("duplicates", count_of(defects.duplicate_points, "point") +
+                              " with the coordinates of another (convert --weld 0 joins them)");
 
-  for (const char* name : {"components", "boundary_loops", "euler_characteristic", "genus"})
-    result[name] = nullptr;
-  if (report.manifold()) {
-    VKMESH_TRY(const Topology t, job.timed("consolidate", [&] { return topology_of(mesh, report); }));
-    result["components"] = t.components;
-    result["boundary_loops"] = t.boundary_loops;
-    result["euler_characteristic"] = t.euler;
-    if (t.genus) result["genus"] = *t.genus;
-    job.row("manifold", "yes, compatibly oriented");
-    job.row("topology", count_of(t.components, "component") + ", " +
-                            count_of(t.boundary_loops, "boundary loop") + ", Euler characteristic " +
-                            std::to_string(t.euler) +
-                            (report.isolated_points > 0 ? " (isolated points aside)" : "") +
-                            (t.genus ? ", genus " + std::to_string(*t.genus) : ""));
-  } else {
-    job.row("manifold", "no: " + report.defects);
+  // The file as it was read: its faces all count, the surface is that of the sound ones.
+  result = to_json(whole);
+  result["points"] = mesh.points.size();
+  result["faces"] = mesh.face_count();
+  result["triangles"] = triangles;
+  result["largest_face"] = largest;
+  result["components"] = topology.components.size();
+  const bool manifold = whole.manifold() && defects.degenerate_faces == 0;
+  result["manifold"] = manifold;
+  result["degenerate_faces"] = defects.degenerate_faces;
+  result["duplicate_faces"] = defects.duplicate_faces;
+  result["duplicate_points"] = defects.duplicate_points;
+  result["isolated_points"] = defects.isolated_points;
+  result["component_topology"] = Json::array();
+  for (const Topology& t : topology.components) result["component_topology"].push_back(to_json(t));
+
+  if (mesh.face_count() > 0) {
+    const std::string odd = defects_of(whole, defects);
+    job.row("manifold", std::string(manifold ? "yes" : "no") +
+                            (whole.oriented() ? ", compatibly oriented" : "") +
+                            (odd.empty() ? "" : ": " + odd));
+    job.row("topology", count_of(topology.components.size(), "component") + ", " + described(whole) +
+                            (defects.isolated_points > 0 ? " (isolated points aside)" : ""));
+    constexpr std::size_t kShown = 8;
+    if (topology.components.size() > 1)
+      for (std::size_t i = 0; i < std::min(kShown, topology.components.size()); ++i)
+        job.row("",
+                count_of(topology.components[i].faces, "face") + ": " + described(topology.components[i]));
+    if (topology.components.size() > kShown)
+      job.row("", "and " + grouped(topology.components.size() - kShown) + " more (--json lists them)");
   }
 
   const double area = surface_area(mesh);
   result["area"] = area;
+  result["volume"] = nullptr;
+  if (whole.closed() && whole.oriented() && defects.degenerate_faces == 0) {
+    const double volume = enclosed_volume(mesh);
+    result["volume"] = volume;
+    job.row("volume", brief(volume));
+  }
   result["bounds"] = nullptr;
   if (!mesh.points.empty()) {
     Vec3 low = mesh.points[0], high = mesh.points[0];
@@ -148,9 +192,10 @@ void add_info(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("info", "Counts, defects and topology of a mesh");
   command->footer(
       "Any mesh that can be read is described, a defective one too; the exit code is then still 0.\n"
-      "The Euler characteristic v - e + f leaves isolated points aside; the genus is that of a closed mesh "
-      "of one "
-      "component.\n\n"
+      "Components are faces that hang together through edges. The Euler characteristic v - e + f leaves "
+      "isolated points aside;\nthe genus of several components is the sum of theirs. STL has no shared "
+      "points: "
+      "equal corners are one.\n\n"
       "Example:\n  vkmesh info data/dragon/dragon_vrip.ply.gz");
   add_common_options(*command, program.options, true, false);
   command->callback([&program] {

@@ -9,7 +9,7 @@ Result<void> run(Job& job) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   VKMESH_TRY(const std::vector<Vec3> normals, backend->vertex_normals(half_edges, mesh.points));
 
   std::size_t undefined = 0;
@@ -38,6 +38,7 @@ void add_normals(CLI::App& app, Program& program) {
       "are those of\nthe triangles they are cut into. Every device gives the same bytes.\n\n"
       "Example:\n  vkmesh normals data/dragon/dragon_vrip.ply.gz normals.ply");
   add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
   command->callback([&program] {
     program.command = "normals";
     program.action = run;

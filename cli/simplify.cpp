@@ -4,7 +4,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <type_traits>
 
 #include <vkmesh/decimation/decimate.h>
 
@@ -22,25 +21,6 @@ struct SimplifyOptions {
   std::optional<double> error;
   double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
 };
-
-/// The channels for the vertices that remain.
-std::vector<Channel> gather(const std::vector<Channel>& channels, const std::vector<std::uint32_t>& source) {
-  std::vector<Channel> kept;
-  for (const Channel& channel : channels) {
-    const std::size_t n = channel.components;
-    ChannelValues values = std::visit(
-        [&](const auto& from) -> ChannelValues {
-          std::remove_cvref_t<decltype(from)> to;
-          to.reserve(source.size() * n);
-          for (const std::uint32_t v : source)
-            for (std::size_t i = 0; i < n; ++i) to.push_back(from[v * n + i]);
-          return to;
-        },
-        channel.values);
-    kept.push_back({channel.name, channel.components, std::move(values)});
-  }
-  return kept;
-}
 
 void say_what_is_lost(Job& job, const std::vector<Channel>& channels, const char* of) {
   for (const Channel& channel : channels)
@@ -67,7 +47,7 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   if (!mesh.is_triangles()) job.note("polygons were cut into triangles");
-  VKMESH_TRY(HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
+  VKMESH_TRY(HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   say_what_is_lost(job, mesh.corner_channels, "corners");
   say_what_is_lost(job, mesh.face_channels, "faces");
   // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
@@ -120,6 +100,7 @@ void add_simplify(CLI::App& app, Program& program) {
       "point attributes stay with their points. Runs on the host whatever --device says.\n\n"
       "Example:\n  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1");
   add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<SimplifyOptions>();
   CLI::Option* ratio =
       command->add_option("--ratio", options->ratio, "Stop at this share of the triangles, from 0 to 1")

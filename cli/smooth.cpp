@@ -12,7 +12,7 @@ Result<void> run(Job& job, const LaplacianSmoothingOptions& options) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  VKMESH_TRY(const HalfEdgeMesh half_edges, job.triangle_half_edges(mesh));
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   VKMESH_TRY(std::vector<Vec3> smoothed, backend->laplacian_smoothing(half_edges, mesh.points, options));
 
   double sum = 0, largest = 0;
@@ -53,6 +53,7 @@ void add_smooth(CLI::App& app, Program& program) {
       "Example:\n  vkmesh smooth data/dragon/dragon_vrip.ply.gz smooth.ply --lambda 0.5 --iterations "
       "10");
   add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<LaplacianSmoothingOptions>();
   command->add_option("--lambda", options->lambda, "Share of the way in each step, from 0 to 1; default 0.5")
       ->type_name("L")

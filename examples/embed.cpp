@@ -2,6 +2,7 @@
 //   embed IN [DEVICE]      DEVICE as in ContextOptions::device; default auto
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <vkmesh/consolidate.h>
@@ -14,9 +15,10 @@ using namespace vkmesh;
 Result<std::vector<Vec3>> normals_of(const char* path, const ContextOptions& options) {
   VKMESH_TRY(MeshFile file, read_mesh(path));
   VKMESH_TRY(IndexedFaceSet mesh, to_indexed_face_set(std::move(file)));
-  VKMESH_TRY(Consolidated made, consolidate(mesh));
+  VKMESH_TRY(Consolidated made, consolidate(std::move(mesh)));
   VKMESH_TRY(auto context, Context::create(options));
-  VKMESH_TRY(auto device, DeviceMesh::create(*context, made.mesh, mesh.points, {.vertex_normals = true}));
+  VKMESH_TRY(auto device,
+             DeviceMesh::create(*context, made.mesh, made.face_set.points, {.vertex_normals = true}));
   VKMESH_TRY(auto recorder, Recorder::create(*context));
   VKMESH_CHECK(record_vertex_normals(recorder, device));
   VKMESH_CHECK(recorder.submit_and_wait());

@@ -46,7 +46,8 @@ Result<void> run(const std::filesystem::path& in, const std::filesystem::path& o
   const std::string points = grouped(mesh.points.size(), "points");
   row("read", points + ", " + grouped(mesh.face_count(), "faces"), lap(from), "host");
 
-  VKMESH_TRY(const Consolidated c, consolidate(mesh));
+  VKMESH_TRY(Consolidated c, consolidate(std::move(mesh)));
+  mesh = std::move(c.face_set);
   const std::string boundary = grouped(c.report.boundary_edges, "on the boundary");
   row("consolidate", grouped(c.report.edges, "edges, ") + boundary, lap(from), "host");
 

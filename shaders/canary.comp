@@ -20,6 +20,7 @@ void main() {
   const vec3 b = load3(p.inputs, at + 1);
   const vec3 c = load3(p.inputs, at + 2);
   const float x = abs(a.x), y = abs(a.y);
+  VKMESH_SURPLUS_THREADS_LEAVE;
   store_result(i, 0, zero_below(a.x, y));
   store_result(i, 1, reciprocal(x));
   store_result(i, 2, reciprocal_root(x));

@@ -1,7 +1,7 @@
 # Shell functions of ./demo and ./test. To be sourced from the top folder.
 
 # Objects are found again after a fresh clone where ccache is there; it is not needed.
-if command -v ccache >/dev/null; then export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
+if command -v ccache >/dev/null; then export CCACHE_SLOPPINESS=pch_defines,time_macros CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
 
 # logged NAME COMMAND...: runs a command with its output in build/NAME.log, which is shown when the command fails.
 logged() {

@@ -7,11 +7,11 @@ cd "$(dirname "$0")/.."
 packages=(
   ca-certificates cmake g++ ninja-build glslang-tools
   libcli11-dev libexpected-dev libglm-dev libpng-dev libstb-dev libtbb-dev libvulkan-dev libvulkan-volk-dev libvulkan1 mesa-vulkan-drivers
-  nlohmann-json3-dev zlib1g-dev
+  libtinygltf-dev nlohmann-json3-dev zlib1g-dev
 )
 case "${1:-}" in
   demo) ;;
-  test) packages+=(catch2 clang clang-format libclang-rt-14-dev libmeshoptimizer-dev libopenmesh-dev spirv-tools vulkan-validationlayers) ;;
+  test) packages+=(admesh catch2 clang clang-format libcgal-dev libcoin-dev libclang-rt-14-dev libmeshoptimizer-dev libopenmesh-dev spirv-tools vulkan-validationlayers) ;;
   *)
     echo "usage: tools/setup.sh demo|test" >&2
     exit 2

@@ -84,7 +84,7 @@ class Device {
   void set_name(VkObjectType type, std::uint64_t object, const std::string& name) const;
 
   InstanceFunctions instance_functions;
-  DeviceFunctions functions;
+  VolkDeviceTable functions{};
   ContextOptions options;
   DeviceInfo info;
   std::unique_ptr<Instance> instance;  ///< Null when the device is adopted.

@@ -1,19 +1,12 @@
 #include "vulkan_functions.h"
 
-#include <dlfcn.h>
+#include <mutex>
 
 namespace vkmesh::detail {
 namespace {
 
-// The library stays open until the process ends: drivers leave thread-exit handlers behind that would jump
-// into it.
-PFN_vkGetInstanceProcAddr open_system_loader() {
-  for (const char* name : {"libvulkan.so.1", "libvulkan.so"})
-    if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL))
-      if (void* entry = dlsym(library, "vkGetInstanceProcAddr"))
-        return reinterpret_cast<PFN_vkGetInstanceProcAddr>(entry);
-  return nullptr;
-}
+// Over volk's global variables.
+std::mutex volk_mutex;
 
 tl::unexpected<Error> missing(const char* function) {
   return fail(ErrorCode::kNoDevice, std::string("the Vulkan driver lacks ") + function);
@@ -26,7 +19,12 @@ tl::unexpected<Error> missing(const char* function) {
   if (functions.name == nullptr) return missing(#name);
 
 Result<LoaderFunctions> load_loader_functions(PFN_vkGetInstanceProcAddr entry) {
-  if (entry == nullptr) entry = open_system_loader();
+  if (entry == nullptr) {
+    // It stays open until the process ends: drivers leave thread-exit handlers behind that would jump into
+    // it.
+    const std::lock_guard lock(volk_mutex);
+    entry = vkmesh_open_loader();
+  }
   if (entry == nullptr)
     return fail(ErrorCode::kNoDevice,
                 "there is no Vulkan loader on this machine (libvulkan.so.1; Debian's package libvulkan1)");
@@ -52,10 +50,18 @@ Result<InstanceFunctions> load_instance_functions(PFN_vkGetInstanceProcAddr entr
   return functions;
 }
 
-Result<DeviceFunctions> load_device_functions(const InstanceFunctions& instance, VkDevice device) {
-  const auto load = [&](const char* name) { return instance.vkGetDeviceProcAddr(device, name); };
-  DeviceFunctions functions;
-  VKMESH_DEVICE_FUNCTIONS(VKMESH_LOAD)
+#undef VKMESH_LOAD
+
+Result<VolkDeviceTable> load_device_functions(const InstanceFunctions& instance, VkDevice device) {
+  VolkDeviceTable functions{};
+  {
+    const std::lock_guard lock(volk_mutex);
+    vkmesh_load_device_table(instance.vkGetDeviceProcAddr, device, &functions);
+  }
+#define VKMESH_REQUIRE(name) \
+  if (functions.name == nullptr) return missing(#name);
+  VKMESH_DEVICE_FUNCTIONS(VKMESH_REQUIRE)
+#undef VKMESH_REQUIRE
   return functions;
 }
 

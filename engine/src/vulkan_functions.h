@@ -1,12 +1,13 @@
 // The Vulkan functions that the engine calls, held by each context: no global function pointers, so that
-// several contexts, and a program with a loader of its own, live side by side.
+// several contexts, and a program with a loader of its own, live side by side. Those of a device stand in
+// volk's table; for those before it volk has only global variables.
 #pragma once
 
 #include <string>
 
-#include <vulkan/vulkan_core.h>
-
 #include <vkmesh/result.h>
+
+#include "volk_tables.h"
 
 namespace vkmesh::detail {
 
@@ -27,6 +28,7 @@ namespace vkmesh::detail {
   X(vkGetPhysicalDeviceProperties2)      \
   X(vkGetPhysicalDeviceQueueFamilyProperties)
 
+// Of volk's table, what a device must have.
 #define VKMESH_DEVICE_FUNCTIONS(X)  \
   X(vkAllocateCommandBuffers)       \
   X(vkAllocateMemory)               \
@@ -103,17 +105,13 @@ struct InstanceFunctions {
   PFN_vkSetDebugUtilsObjectNameEXT vkSetDebugUtilsObjectNameEXT = nullptr;
 };
 
-struct DeviceFunctions {
-  VKMESH_DEVICE_FUNCTIONS(VKMESH_MEMBER)
-};
-
 #undef VKMESH_MEMBER
 
 /// `entry` null: the system's loader. Errors: kNoDevice without one.
 [[nodiscard]] Result<LoaderFunctions> load_loader_functions(PFN_vkGetInstanceProcAddr entry);
 [[nodiscard]] Result<InstanceFunctions> load_instance_functions(PFN_vkGetInstanceProcAddr entry,
                                                                 VkInstance instance);
-[[nodiscard]] Result<DeviceFunctions> load_device_functions(const InstanceFunctions& functions,
+[[nodiscard]] Result<VolkDeviceTable> load_device_functions(const InstanceFunctions& functions,
                                                             VkDevice device);
 
 /// "VK_ERROR_DEVICE_LOST", or the number.

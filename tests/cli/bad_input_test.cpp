@@ -93,10 +93,10 @@ TEST_CASE("Bad input is refused by every subcommand that must, with a place and 
     const std::string in = scratch.file(one.name, one.content);
     const std::string out = scratch.path("out.ply");
     for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"normals", in, out, "--device", "cpu"},
-          {"curvature", in, out, "--device", "cpu"},
-          {"smooth", in, out, "--device", "cpu"},
-          {"simplify", in, out, "--ratio", "0.5"}}) {
+         {std::vector<std::string>{"normals", in, out, "--device", "cpu", "--strict"},
+          {"curvature", in, out, "--device", "cpu", "--strict"},
+          {"smooth", in, out, "--device", "cpu", "--strict"},
+          {"simplify", in, out, "--ratio", "0.5", "--strict"}}) {
       CAPTURE(arguments[0]);
       const Outcome outcome = vkmesh_run(arguments);
       CAPTURE(outcome.err);
@@ -108,7 +108,7 @@ TEST_CASE("Bad input is refused by every subcommand that must, with a place and 
     }
     // What only a manifold is needed for does not trouble info and convert.
     const Outcome info = vkmesh_run({"info", in});
-    const Outcome convert = vkmesh_run({"convert", in, out});
+    const Outcome convert = vkmesh_run({"convert", in, out, "--as-is"});
     CHECK(info.code == (one.code == 3 ? 3 : 0));
     CHECK(convert.code == (one.code == 3 ? 3 : 0));
     CHECK(std::filesystem::exists(out) == (one.code != 3));
@@ -148,7 +148,7 @@ TEST_CASE("Output that cannot be written gives exit code 7") {
   for (const std::string& out : {scratch.path("none/out.ply"), in + "/out.ply", scratch.path("folder.ply"),
                                  std::string("/proc/out.ply")}) {
     CAPTURE(out);
-    const Outcome outcome = vkmesh_run({"convert", in, out});
+    const Outcome outcome = vkmesh_run({"convert", in, out, "--as-is"});
     CHECK(outcome.code == 7);
     CHECK_THAT(outcome.err, Catch::StartsWith("vkmesh: " + out + ": "));
     CHECK(outcome.out.empty());

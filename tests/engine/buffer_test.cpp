@@ -30,6 +30,12 @@ void VKAPI_PTR memory_that_is_not_coherent(VkPhysicalDevice device,
     memory->memoryTypes[i].propertyFlags &= ~static_cast<VkFlags>(VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
 }
 
+void VKAPI_PTR memory_of_one_mebibyte(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties* memory) {
+  FakeLoader::real<PFN_vkGetPhysicalDeviceMemoryProperties>("vkGetPhysicalDeviceMemoryProperties")(device,
+                                                                                                   memory);
+  for (std::uint32_t i = 0; i < memory->memoryHeapCount; ++i) memory->memoryHeaps[i].size = 1 << 20;
+}
+
 VkResult VKAPI_PTR count_flush(VkDevice device, std::uint32_t count, const VkMappedMemoryRange* ranges) {
   ++flushes;
   return FakeLoader::real<PFN_vkFlushMappedMemoryRanges>("vkFlushMappedMemoryRanges")(device, count, ranges);
@@ -154,6 +160,22 @@ TEST_CASE("more memory than there is, is an error that leaves the rest as it was
     CHECK_THAT(buffer.error().message, Catch::Contains("'giant' needs " + std::to_string(bytes) + " bytes"));
   }
   CHECK(context.allocated_bytes() == before);
+}
+
+TEST_CASE("buffers together get no more memory than the device has") {
+  FakeLoader loader;
+  loader.replace("vkGetPhysicalDeviceMemoryProperties", memory_of_one_mebibyte);
+  const auto context = Context::create(loader.options());
+  REQUIRE(context);
+  {
+    const auto first = Buffer::create(**context, 700000);
+    REQUIRE(first);
+    const auto second = Buffer::create(**context, 700000, BufferMemory::kDevice, "second");
+    REQUIRE(!second);
+    CHECK(second.error().code == ErrorCode::kOutOfMemory);
+    CHECK_THAT(second.error().message, Catch::Contains("'second' needs 700000 bytes"));
+  }
+  CHECK(Buffer::create(**context, 700000));
 }
 
 TEST_CASE("a buffer that cannot be mapped leaves nothing behind") {

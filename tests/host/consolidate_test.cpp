@@ -69,14 +69,14 @@ TEST_CASE("a vertex of high valence is sorted right") {
 
 TEST_CASE("each defect is refused with its count and first element") {
   SECTION("three faces on an edge") {
-    const auto result = consolidate(test::fin());
+    const auto result = to_half_edge_mesh(test::fin());
     REQUIRE_FALSE(result);
     CHECK(result.error().code == ErrorCode::kUnsuitable);
     CHECK_THAT(result.error().message, Catch::Contains("1 edge with three or more faces (points 0 and 1)"));
     CHECK(report_of(test::fin()).non_manifold_edges == 1);
   }
   SECTION("separate fans at a point") {
-    const auto result = consolidate(test::bow_tie());
+    const auto result = to_half_edge_mesh(test::bow_tie());
     REQUIRE_FALSE(result);
     CHECK_THAT(result.error().message,
                Catch::Contains("1 point where separate fans of faces meet (point 0)"));
@@ -88,11 +88,11 @@ TEST_CASE("each defect is refused with its count and first element") {
     CHECK(report.misoriented_edges == 3);
     CHECK_THAT(report.defects,
                Catch::Contains("3 edges whose two faces disagree in orientation (first: points 0 and 1)"));
-    CHECK_FALSE(consolidate(set));
+    CHECK_FALSE(to_half_edge_mesh(set));
   }
   SECTION("a Möbius strip, which no orientation serves") {
     CHECK(report_of(test::mobius(9)).misoriented_edges == 1);
-    CHECK_FALSE(consolidate(test::mobius(9)));
+    CHECK_FALSE(to_half_edge_mesh(test::mobius(9)));
   }
   SECTION("a face that repeats a point") {
     IndexedFaceSet set = test::quad_cube();
@@ -100,7 +100,7 @@ TEST_CASE("each defect is refused with its count and first element") {
     const ConsolidateReport report = report_of(set);
     CHECK(report.degenerate_faces == 1);
     CHECK_THAT(report.defects, Catch::StartsWith("1 degenerate face (face 0)"));
-    CHECK_FALSE(consolidate(set));
+    CHECK_FALSE(to_half_edge_mesh(set));
   }
   SECTION("a face of two corners") {
     IndexedFaceSet set = test::quad_cube();

@@ -85,16 +85,71 @@ TEST_CASE("OBJ content that is not kept is named", "[io][obj]") {
       std::string("mtllib a b.mtl\no thing\ng one two\nusemtl red\ns off\n") + kHead +
           "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1 3 4\nl 1 2\nl 2 3\np 1\ncurv 0 1 \\\n1 2\nv 1 2 3 0.5\n",
       "a.obj");
-  CHECK(file.notes ==
-        std::vector<std::string>{"1 'vt' lines ignored: not every corner of a face names one",
-                                 "1 'vn' lines ignored: not every corner of a face names one",
-                                 "1 vertex weights ignored", "1 'curv' lines ignored", "1 'g' lines ignored",
-                                 "2 'l' lines ignored", "1 'mtllib' lines ignored", "1 'o' lines ignored",
-                                 "1 'p' lines ignored", "1 's' lines ignored", "1 'usemtl' lines ignored"});
+  CHECK(file.notes == std::vector<std::string>{"1 'vt' lines ignored: not every corner of a face names one",
+                                               "1 'vn' lines ignored: not every corner of a face names one",
+                                               "1 vertex weights ignored", "1 'curv' lines ignored",
+                                               "2 'l' lines ignored", "1 'mtllib' lines ignored",
+                                               "1 'p' lines ignored", "1 's' lines ignored"});
   const IndexedFaceSet& mesh = std::get<IndexedFaceSet>(file.geometry);
   CHECK(mesh.face_count() == 2);
   CHECK(mesh.points.size() == 5);
   CHECK(mesh.corner_channels.empty());
+}
+
+TEST_CASE("OBJ materials and groups are labels of faces", "[io][obj]") {
+  using Numbers = std::vector<std::uint32_t>;
+  using Labels = std::vector<std::string>;
+  const std::string face = "f 1 2 3\n";
+  const IndexedFaceSet mesh = parse(kHead + face + "usemtl  red paint \t# a comment\ng top\n" + face + face +
+                                        "usemtl blue\no side\n" + face +
+                                        "usemtl red paint\nusemtl unused\nusemtl\n" + face + "g top\n" + face,
+                                    "a.obj");
+  const Channel* material = find_channel(mesh.face_channels, "material");
+  REQUIRE(material != nullptr);
+  CHECK(material->components == 1);
+  CHECK(material->labels == Labels{"", "red paint", "blue"});
+  CHECK(material->values == ChannelValues(Numbers{0, 1, 1, 2, 0, 0}));
+  const Channel* group = find_channel(mesh.face_channels, "group");
+  REQUIRE(group != nullptr);
+  CHECK(group->labels == Labels{"", "top", "side"});
+  CHECK(group->values == ChannelValues(Numbers{0, 1, 1, 2, 2, 1}));
+
+  const WriteOptions options = write_as(FileFormat::kObj, FileEncoding::kAscii);
+  const std::string text = encode(mesh, options);
+  CHECK(text == std::string(kHead) +
+                    "f 1 2 3\ng top\nusemtl red paint\nf 1 2 3\nf 1 2 3\ng side\nusemtl blue\n"
+                    "f 1 2 3\nusemtl\nf 1 2 3\ng top\nf 1 2 3\n");
+  const IndexedFaceSet again = parse(text, "a.obj");
+  require_same(mesh, again);
+  for (const char* name : {"material", "group"})
+    CHECK(find_channel(again.face_channels, name)->labels == find_channel(mesh.face_channels, name)->labels);
+
+  // A name before the first face needs no empty one; names without faces are none.
+  CHECK(parse(std::string("usemtl a\n") + kHead + face, "a.obj").face_channels[0].labels == Labels{"a"});
+  CHECK(parse(kHead + face + "usemtl a\n", "a.obj").face_channels.empty());
+}
+
+TEST_CASE("labels that OBJ cannot hold are named", "[io][obj]") {
+  TemporaryFolder folder;
+  const auto path = folder.path() / "a.obj";
+  const auto left_out = [&](Channel channel) {
+    IndexedFaceSet mesh = tetrahedron();
+    mesh.face_channels = {std::move(channel)};
+    const auto notes = write_mesh(path, mesh, write_as(FileFormat::kObj, FileEncoding::kAscii));
+    REQUIRE(notes);
+    REQUIRE(read_mesh(path));
+    return notes->size();
+  };
+  using Numbers = std::vector<std::int32_t>;
+  CHECK(left_out({"material", 1, Numbers{0, 1, 0, 1}, {"a", "b c"}}) == 0);
+  CHECK(left_out({"group", 1, std::vector<std::uint8_t>{0, 1, 0, 1}, {"a", "b"}}) == 0);
+  CHECK(left_out({"material", 1, Numbers{0, 1, 2, 1}, {"a", "b"}}) == 1);
+  CHECK(left_out({"material", 1, Numbers{0, 1, -1, 1}, {"a", "b"}}) == 1);
+  CHECK(left_out({"material", 1, Numbers{0, 1, 0, 1}, {}}) == 1);
+  CHECK(left_out({"material", 1, std::vector<float>(4), {"a"}}) == 1);
+  CHECK(left_out({"other", 1, Numbers{0, 1, 0, 1}, {"a", "b"}}) == 1);
+  for (const char* label : {"a#b", "a\nf 1 2 3", "a\\", " a", "a "})
+    CHECK(left_out({"material", 1, Numbers(4), {label}}) == 1);
 }
 
 TEST_CASE("OBJ vertex colours are fractions or bytes", "[io][obj]") {

@@ -1,7 +1,13 @@
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
+#include "io/ply.h"
 #include "io_support.h"
 #include "support/data.h"
 
@@ -200,24 +206,134 @@ TEST_CASE("PLY content that is not kept is passed over and named", "[io][ply]") 
   require_same(expected, std::get<IndexedFaceSet>(text.geometry));
   CHECK(text.notes == notes);
 
-  std::string binary = "ply\nformat binary_little_endian" + header;
-  const auto put = [&](auto value) { binary.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
-  const auto u8 = [&](int v) { put(static_cast<std::uint8_t>(v)); };
-  const auto i16 = [&](int v) { put(static_cast<std::int16_t>(v)); };
-  u8(2), i16(7), i16(8), put(1);
-  u8(0), put(2);
-  u8(6);
-  for (int i = 0; i < 6; ++i) put(0.5f);
-  u8(5), i16(3), i16(0), i16(1), i16(2);
-  u8(0), u8(6), i16(4), i16(0), i16(1), i16(2), i16(3);
-  for (const Vec3& p : expected.points) {
-    put(p.x), put(p.y), put(p.z), put(1);
-    put(0.25);
+  for (const bool big : {false, true}) {
+    std::string binary = "ply\nformat binary_" + std::string(big ? "big" : "little") + "_endian" + header;
+    const auto put = [&](auto value) {
+      std::string bytes(reinterpret_cast<const char*>(&value), sizeof(value));
+      if (big) std::reverse(bytes.begin(), bytes.end());
+      binary += bytes;
+    };
+    const auto u8 = [&](int v) { put(static_cast<std::uint8_t>(v)); };
+    const auto i16 = [&](int v) { put(static_cast<std::int16_t>(v)); };
+    u8(2), i16(7), i16(8), put(1);
+    u8(0), put(2);
+    u8(6);
+    for (int i = 0; i < 6; ++i) put(0.5f);
+    u8(5), i16(3), i16(0), i16(1), i16(2);
+    u8(0), u8(6), i16(4), i16(0), i16(1), i16(2), i16(3);
+    for (const Vec3& p : expected.points) {
+      put(p.x), put(p.y), put(p.z), put(1);
+      put(0.25);
+    }
+    put(0), put(1);
+    const MeshFile file = parse_file(binary, "a.ply");
+    require_same(expected, std::get<IndexedFaceSet>(file.geometry));
+    CHECK(file.notes == notes);
   }
-  put(0), put(1);
-  const MeshFile file = parse_file(binary, "a.ply");
-  require_same(expected, std::get<IndexedFaceSet>(file.geometry));
-  CHECK(file.notes == notes);
+}
+
+TEST_CASE("PLY keeps the extremes of every scalar type", "[io][ply]") {
+  IndexedFaceSet mesh = icosphere(0);
+  const auto add = [&](const std::string& name, auto type) {
+    using T = decltype(type);
+    using Limits = std::numeric_limits<T>;
+    // Twelve points.
+    std::vector<T> values = {Limits::lowest(), Limits::max(), Limits::min(), T(0), T(1), T(100), T(7)};
+    if constexpr (std::is_floating_point_v<T>)
+      values = {Limits::lowest(), Limits::max(), Limits::min(),      Limits::denorm_min(), T(-0.0),
+                T(0.1),           T(1) / 3,      Limits::infinity(), -Limits::infinity()};
+    values.resize(mesh.points.size());
+    mesh.point_channels.push_back({name, 1, values});
+    std::vector<T> reversed(values.rbegin(), values.rend());
+    reversed.resize(mesh.face_count());
+    mesh.face_channels.push_back({name, 1, reversed});
+  };
+  add("int8", std::int8_t{}), add("uint8", std::uint8_t{}), add("int16", std::int16_t{});
+  add("uint16", std::uint16_t{}), add("int32", std::int32_t{}), add("uint32", std::uint32_t{});
+  add("float", 0.0f), add("double", 0.0);
+  for (const FileEncoding encoding : kEncodings) {
+    INFO(name_of(encoding));
+    const IndexedFaceSet back = parse(encode(mesh, write_as(FileFormat::kPly, encoding)), "a.ply");
+    require_same(mesh, back);
+    for (std::size_t i = 0; i < mesh.point_channels.size(); ++i)
+      std::visit(
+          [&](const auto& values) {
+            const auto& other = std::get<std::decay_t<decltype(values)>>(back.point_channels[i].values);
+            // 0 equals -0, but its bits do not.
+            CHECK(std::memcmp(values.data(), other.data(), values.size() * sizeof(values[0])) == 0);
+          },
+          mesh.point_channels[i].values);
+  }
+}
+
+namespace {
+
+/// What parsing in blocks of that size gives, as one string: all that is kept, or the error.
+std::string parsed_in_blocks(const std::string& content, std::size_t block_bytes) {
+  const Progress progress;
+  const auto file = detail::ply::parse({content, "a.ply", progress, 0}, block_bytes);
+  if (!file) return file.error().describe();
+  std::string text;
+  for (const std::string& note : file->notes) text += note + "\n";
+  const auto& mesh = std::get<IndexedFaceSet>(file->geometry);
+  text += encode(mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
+  return text + (mesh.face_offsets.empty() ? "triangles" : "polygons");
+}
+
+const std::vector<std::size_t> kBlockSizes = {1, 13, 100, 1000};
+
+}  // namespace
+
+TEST_CASE("PLY read in blocks is the same as read in one go", "[io][ply]") {
+  IndexedFaceSet polygons = mixed_polygons();
+  polygons.corners.insert(polygons.corners.end(), {0, 1, 2, 1, 2, 3});
+  polygons.face_offsets.insert(polygons.face_offsets.end(), {15, 18});
+  for (const IndexedFaceSet& mesh : {with_channels(icosphere(2)), icosphere(1), with_channels(polygons)})
+    for (const FileEncoding encoding : kEncodings) {
+      const std::string content = encode(mesh, write_as(FileFormat::kPly, encoding));
+      const std::string whole = parsed_in_blocks(content, std::string::npos);
+      REQUIRE(whole.ends_with(mesh.is_triangles() ? "triangles" : "polygons"));
+      for (const std::size_t bytes : kBlockSizes) CHECK(parsed_in_blocks(content, bytes) == whole);
+      if (encoding != FileEncoding::kAscii) continue;
+      // Other line ends, and lines that hold nothing, which are no elements.
+      for (const std::string line_end : {"\r\n", "\r", "\n \n\t\r\n"}) {
+        const std::size_t body = content.find("end_header\n") + 11;
+        std::string other;
+        for (std::size_t i = 0; i < content.size(); ++i)
+          if (content[i] == '\n')
+            other += i < body ? line_end.substr(0, line_end.find(' ')) : line_end;
+          else
+            other += content[i];
+        for (const std::size_t bytes : kBlockSizes) CHECK(parsed_in_blocks(other, bytes) == whole);
+      }
+    }
+}
+
+TEST_CASE("PLY read in blocks tells the first error of the file", "[io][ply]") {
+  for (const FileEncoding encoding : kEncodings) {
+    const std::string content = encode(with_channels(mixed_polygons()), write_as(FileFormat::kPly, encoding));
+    const std::size_t body = content.find("end_header\n") + 11;
+    std::size_t errors = 0, differences = 0;
+    const auto compare = [&](const std::string& broken) {
+      const std::string whole = parsed_in_blocks(broken, std::string::npos);
+      errors += whole.starts_with("a.ply") ? 1 : 0;
+      for (const std::size_t bytes : kBlockSizes)
+        differences += parsed_in_blocks(broken, bytes) == whole ? 0 : 1;
+    };
+    for (std::size_t at = body; at < content.size(); ++at) {
+      compare(content.substr(0, at));
+      for (const std::string with : {"", "x", "9", "\n", "-", "\xff"}) {
+        std::string broken = content;
+        compare(broken.replace(at, 1, with));
+        // A second error, behind the first.
+        broken.replace(std::min(at + 40, broken.size() - 1), 1, "y");
+        compare(broken);
+      }
+    }
+    INFO(name_of(encoding));
+    CHECK(errors > content.size() - body);
+    CHECK(differences == 0);
+  }
 }
 
 TEST_CASE("triangles before and after a quad are read alike from binary PLY", "[io][ply]") {
@@ -277,4 +393,15 @@ TEST_CASE("reading tells its progress and can be interrupted", "[io][ply]") {
     REQUIRE_FALSE(stopped);
     CHECK(stopped.error().code == ErrorCode::kInterrupted);
   }
+}
+
+TEST_CASE("a PLY block that holds two elements is parted between them", "[io][ply]") {
+  // Each line of a vertex would also do as a face.
+  std::string content =
+      "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float q\nelement face 9\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < 9; ++i) content += "3 0 1 2\n";
+  for (int i = 0; i < 9; ++i) content += "3 8 7 6\n";
+  const std::string whole = parsed_in_blocks(content, std::string::npos);
+  for (std::size_t bytes = 1; bytes < 100; ++bytes) CHECK(parsed_in_blocks(content, bytes) == whole);
 }

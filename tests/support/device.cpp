@@ -129,6 +129,8 @@ ContextOptions device_options() {
   ContextOptions options;
   options.device = device_name();
   options.validation = true;
+  const char* gpu_assisted = std::getenv("VKMESH_GPU_ASSISTED");
+  options.gpu_assisted_validation = gpu_assisted != nullptr && std::string(gpu_assisted) == "1";
   options.on_validation_message = [](const std::string& message) {
     const std::lock_guard lock(watch().mutex);
     watch().messages.push_back(message);

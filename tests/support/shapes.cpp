@@ -149,6 +149,67 @@ IndexedFaceSet cylinder(std::uint32_t rings, std::uint32_t sides) {
   return mesh;
 }
 
+IndexedFaceSet klein_bottle(std::uint32_t rings, std::uint32_t sides) {
+  IndexedFaceSet mesh;
+  const IndexedFaceSet ordinary = torus(rings, sides);
+  mesh.points = ordinary.points;
+  const auto point = [&](std::uint32_t ring, std::uint32_t side) {
+    side %= sides;
+    return ring == rings ? (sides - side) % sides : ring * sides + side;
+  };
+  for (std::uint32_t r = 0; r < rings; ++r)
+    for (std::uint32_t s = 0; s < sides; ++s)
+      add_quad(mesh, point(r, s), point(r + 1, s), point(r + 1, s + 1), point(r, s + 1));
+  return mesh;
+}
+
+IndexedFaceSet both(const IndexedFaceSet& a, const IndexedFaceSet& b, Vec3 offset) {
+  IndexedFaceSet mesh = a;
+  for (const Vec3& p : b.points) mesh.points.push_back(p + offset);
+  for (const std::uint32_t c : b.corners)
+    mesh.corners.push_back(c + static_cast<std::uint32_t>(a.points.size()));
+  return mesh;
+}
+
+IndexedFaceSet double_torus() {
+  const IndexedFaceSet one = torus(8, 6);
+  IndexedFaceSet mesh = both(one, one, Vec3(4.0f, 0.0f, 0.0f));
+  const std::size_t second = one.corners.size();
+  // Against each other, so that the faces around the holes agree.
+  const std::uint32_t hole[3] = {mesh.corners[0], mesh.corners[1], mesh.corners[2]};
+  const std::uint32_t other[3] = {mesh.corners[second], mesh.corners[second + 1], mesh.corners[second + 2]};
+  mesh.corners.erase(mesh.corners.begin() + static_cast<std::ptrdiff_t>(second),
+                     mesh.corners.begin() + static_cast<std::ptrdiff_t>(second) + 3);
+  mesh.corners.erase(mesh.corners.begin(), mesh.corners.begin() + 3);
+  for (std::uint32_t& c : mesh.corners)
+    for (unsigned i = 0; i < 3; ++i)
+      if (c == other[i]) c = hole[(3 - i) % 3];
+  // The points of the second hole are not used any more: the last three take their places.
+  std::vector<std::uint32_t> free(other, other + 3);
+  std::sort(free.rbegin(), free.rend());
+  for (const std::uint32_t gone : free) {
+    const auto last = static_cast<std::uint32_t>(mesh.points.size() - 1);
+    mesh.points[gone] = mesh.points[last];
+    mesh.points.pop_back();
+    for (std::uint32_t& c : mesh.corners)
+      if (c == last) c = gone;
+  }
+  return mesh;
+}
+
+IndexedFaceSet tori_sharing_a_point() {
+  const IndexedFaceSet one = torus(8, 6);
+  IndexedFaceSet mesh = both(one, one, Vec3(10.0f, 0.0f, 0.0f));
+  const auto shared = static_cast<std::uint32_t>(one.points.size());
+  for (std::uint32_t& c : mesh.corners)
+    if (c == shared)
+      c = 0;
+    else if (c > shared)
+      --c;
+  mesh.points.erase(mesh.points.begin() + shared);
+  return mesh;
+}
+
 IndexedFaceSet bow_tie() {
   IndexedFaceSet mesh = tetrahedron();
   const Vec3 apex = mesh.points[0];
@@ -179,9 +240,9 @@ void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed) {
 }
 
 HalfEdgeMesh half_edges(const IndexedFaceSet& mesh) {
-  auto consolidated = consolidate(mesh);
-  if (!consolidated) FAIL(consolidated.error().describe());
-  return std::move(consolidated->mesh);
+  auto half_edges = to_half_edge_mesh(mesh);
+  if (!half_edges) FAIL(half_edges.error().describe());
+  return *std::move(half_edges);
 }
 
 }  // namespace vkmesh::test

@@ -6,6 +6,7 @@
 
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/indexed_face_set.h>
+#include <vkmesh/vec.h>
 
 namespace vkmesh::test {
 
@@ -27,6 +28,14 @@ IndexedFaceSet grid(std::uint32_t nx, std::uint32_t ny);
 IndexedFaceSet mobius(std::uint32_t n);
 /// Open tube of rings × sides quads cut into triangles: two boundary loops.
 IndexedFaceSet cylinder(std::uint32_t rings, std::uint32_t sides);
+/// A torus whose tube is mirrored once on its way round: closed, not orientable.
+IndexedFaceSet klein_bottle(std::uint32_t rings, std::uint32_t sides);
+/// Two tori, a triangle of each taken out and the holes joined: genus 2.
+IndexedFaceSet double_torus();
+/// Two tori that have one point in common.
+IndexedFaceSet tori_sharing_a_point();
+/// The faces of both, the points of `b` moved by `offset`.
+IndexedFaceSet both(const IndexedFaceSet& a, const IndexedFaceSet& b, Vec3 offset = Vec3(0.0f));
 /// Two tetrahedra that share one point: a non-manifold vertex.
 IndexedFaceSet bow_tie();
 /// Three triangles on one edge.
@@ -36,7 +45,7 @@ IndexedFaceSet fin();
 /// mesh.
 void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed);
 
-/// consolidate() of a mesh that is known to be manifold; fails the test otherwise.
+/// to_half_edge_mesh() of a mesh that is known to be manifold; fails the test otherwise.
 HalfEdgeMesh half_edges(const IndexedFaceSet& mesh);
 
 }  // namespace vkmesh::test

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -16,9 +17,9 @@ using ChannelValues =
                  std::vector<std::uint32_t>>;
 
 /// A named attribute: `components` scalars for each element, one element after another.
-/// Names with a meaning everywhere: "normal" (3 components), "uv" (2), "color" (3 or 4; 0..255 for uint8,
-/// 0..1 for float), "quality" (1), "material" and "group" (1, whole numbers that number `labels`). Any other
-/// name is carried as it is.
+/// Names with a meaning everywhere: "normal" (3 components), "uv" (2; v points up, as in OBJ), "color" (3 or
+/// 4; 0..255 for uint8, 0..1 for float), "quality" (1), "material" and "group" (1, whole numbers that number
+/// `labels`). Any other name is carried as it is.
 struct Channel {
   std::string name;
   unsigned components = 1;
@@ -37,5 +38,12 @@ struct Channel {
 
 /// Replaces the channel of the same name, or appends.
 void set_channel(std::vector<Channel>& channels, Channel channel);
+
+/// The elements `from` of a channel, in that order: what is left of it when elements are dropped, copied or
+/// moved. O(from.size()).
+[[nodiscard]] Channel gather(const Channel& channel, std::span<const std::uint32_t> from);
+/// The same for each of the channels.
+[[nodiscard]] std::vector<Channel> gather(const std::vector<Channel>& channels,
+                                          std::span<const std::uint32_t> from);
 
 }  // namespace vkmesh

@@ -1,6 +1,7 @@
 // Half-edge connectivity of an oriented 2-manifold, in flat arrays that upload to a device as they are.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -123,6 +124,18 @@ class HalfEdgeMesh {
   [[nodiscard]] HalfEdgeId around_vertex(HalfEdgeId h) const { return twin(previous(h)); }
   /// The half-edge that follows boundary half-edge h along its boundary loop.
   [[nodiscard]] HalfEdgeId next_on_boundary(HalfEdgeId h) const { return leading(target(h)); }
+  /// The half-edge that stands for the edge of h: the smaller of h and its twin.
+  [[nodiscard]] HalfEdgeId edge(HalfEdgeId h) const {
+    return twin_[h.index] < h.index ? HalfEdgeId(twin_[h.index]) : h;
+  }
+  [[nodiscard]] std::array<VertexId, 2> vertices_of_edge(HalfEdgeId h) const {
+    return {origin(h), target(h)};
+  }
+  /// The faces that hold the edge of h, its own first; the second is invalid on the boundary.
+  [[nodiscard]] std::array<FaceId, 2> faces_of_edge(HalfEdgeId h) const {
+    return {face(h), is_boundary(h) ? FaceId{} : face(twin(h))};
+  }
+
   /// The half-edge from a to b, or invalid. O(valence of a).
   [[nodiscard]] HalfEdgeId find_half_edge(VertexId a, VertexId b) const;
 
@@ -149,6 +162,36 @@ class HalfEdgeMesh {
       if (h == start) return;
       if (!h.valid()) f(origin(incoming));
     }
+  }
+
+  /// Calls f(HalfEdgeId) with each edge of the mesh once, as edge() names it, ascending. O(half-edges).
+  template <class F>
+  void for_each_edge(F&& f) const {
+    for (std::uint32_t h = 0; h < half_edge_count(); ++h)
+      if (edge(HalfEdgeId(h)).index == h) f(HalfEdgeId(h));
+  }
+  /// Calls f(HalfEdgeId) with each edge that ends at v, as edge() names it, counter-clockwise; on a boundary
+  /// vertex from one boundary edge to the other. O(valence).
+  template <class F>
+  void for_each_edge_around(VertexId v, F&& f) const {
+    const HalfEdgeId start = leading(v);
+    HalfEdgeId h = start;
+    while (h.valid()) {
+      f(edge(h));
+      const HalfEdgeId incoming = previous(h);
+      h = twin(incoming);
+      if (h == start) return;
+      if (!h.valid()) f(edge(incoming));
+    }
+  }
+  /// Calls f(HalfEdgeId) with each edge that shares a vertex with that of h, around its origin and then
+  /// around its target. O(their valences).
+  template <class F>
+  void for_each_neighbour_of_edge(HalfEdgeId h, F&& f) const {
+    for (const VertexId v : vertices_of_edge(h))
+      for_each_edge_around(v, [&](HalfEdgeId e) {
+        if (e != edge(h)) f(e);
+      });
   }
 
   /// Each boundary loop as its half-edges in order, the loops by their smallest half-edge. O(half-edges).

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include <vkmesh/channel.h>
-#include <vkmesh/indexed_face_set.h>
-#include <vkmesh/result.h>
 #include <vkmesh/vec.h>
 
 namespace vkmesh {
@@ -22,10 +20,5 @@ struct PolygonSoup {
     return face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
   }
 };
-
-/// Identifies corners whose coordinates are equal (0 equals -0) and numbers the points in order of first
-/// appearance. Faces and their channels keep their order. O(n) expected for n corners (a hash table). Errors:
-/// kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
-[[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
 
 }  // namespace vkmesh

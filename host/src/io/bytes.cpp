@@ -142,12 +142,14 @@ Result<Content> read_content(const std::filesystem::path& path, const Progress& 
   const std::size_t expected = S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) : 0;
 
   Content content;
+  // Room for all of it, so that nothing moves; memory is taken only where bytes are put. One byte more than
+  // expected, so that the end of the file shows without another allocation.
+  if (expected > 0) content.bytes.room(expected + 1);
   std::optional<Inflater> inflater;
   ByteBuffer piece;  // Compressed bytes, one piece at a time.
   std::size_t total = 0;
   for (bool first = true;; first = false) {
     ByteBuffer& into = inflater ? piece : content.bytes;
-    // One byte more than expected, so that the end of the file shows without another allocation.
     const std::size_t want =
         first || inflater ? kChunk : std::max(kChunk, expected > total ? expected - total + 1 : total / 4);
     char* room = into.room(want);

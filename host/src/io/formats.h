@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,7 +24,8 @@ struct Source {
   std::string_view bytes;
   std::string name;
   const Progress& progress;
-  double progress_from = 0;  ///< The fraction that getting the bytes took.
+  double progress_from = 0;                       ///< The fraction that getting the bytes took.
+  const std::filesystem::path* folder = nullptr;  ///< Where the files lie that this one names, if anywhere.
 
   /// kUnreadable at the line that holds `at`.
   [[nodiscard]] tl::unexpected<Error> bad_line(const char* at, std::string message) const;
@@ -72,6 +74,12 @@ class FaceCollector {
 [[nodiscard]] Result<MeshFile> parse_stl_binary(const Source& source);
 /// The size that a binary STL file says it has in bytes 80 to 83, or 0 when it is too short to say.
 [[nodiscard]] std::uint64_t stl_binary_size(std::string_view bytes);
+[[nodiscard]] Result<MeshFile> parse_gltf(const Source& source);
+/// kInventor (version 2, ascii) or kVrml1.
+[[nodiscard]] Result<MeshFile> parse_inventor(const Source& source, FileFormat format);
+[[nodiscard]] Result<MeshFile> parse_vrml2(const Source& source);
+/// Whether this is GLB, or JSON that looks like glTF.
+[[nodiscard]] bool is_gltf(std::string_view bytes);
 
 using Notes = std::vector<std::string>;
 
@@ -81,6 +89,11 @@ void encode_ply(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
 void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);
 void encode_off(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);
 void encode_stl(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);
+/// kInventor, kVrml1 and kVrml2.
+void encode_scene(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes);
+/// Errors: kUnsuitable for what exceeds the format's 4 GiB, or has no points.
+[[nodiscard]] Result<void> encode_gltf(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out,
+                                       Notes& notes);
 
 /// The lines of a comment: every control character ends one.
 [[nodiscard]] std::vector<std::string> comment_lines(const std::string& comment);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/weld.h>
 
 #include "catching.h"
 #include "io/bytes.h"
@@ -94,10 +95,12 @@ struct KnownFormat {
   const char* name;
 };
 
-constexpr KnownFormat kFormats[] = {{FileFormat::kPly, "ply"},
-                                    {FileFormat::kObj, "obj"},
-                                    {FileFormat::kOff, "off"},
-                                    {FileFormat::kStl, "stl"}};
+/// Each format with its extensions, the first of which is its name.
+constexpr KnownFormat kFormats[] = {
+    {FileFormat::kPly, "ply"},     {FileFormat::kObj, "obj"},     {FileFormat::kOff, "off"},
+    {FileFormat::kStl, "stl"},     {FileFormat::kGltf, "gltf"},   {FileFormat::kGltf, "glb"},
+    {FileFormat::kInventor, "iv"}, {FileFormat::kVrml1, "vrml1"}, {FileFormat::kVrml2, "vrml2"},
+    {FileFormat::kVrml2, "wrl"},   {FileFormat::kVrml2, "vrml"}};
 
 /// What the name of a file says: its extension in lower case without the dot, and a .gz after it.
 struct NameHint {
@@ -114,6 +117,7 @@ NameHint hint_of(std::filesystem::path path) {
     return text;
   };
   NameHint hint{extension(), false};
+  if (hint.extension == "wrz") return {"wrl", true};
   if (hint.extension != "gz") return hint;
   hint.gzip = true;
   path = path.stem();
@@ -133,6 +137,20 @@ bool is_obj_keyword(std::string_view word) {
   return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
 }
 
+/// Inventor and VRML, which their first line tells apart.
+Result<MeshFile> parse_scene_file(const Source& source) {
+  const std::string_view line = source.bytes.substr(0, source.bytes.find_first_of("\r\n"));
+  if (line.starts_with("#Inventor V2.") && line.find("ascii") != std::string_view::npos)
+    return parse_inventor(source, FileFormat::kInventor);
+  if (line.starts_with("#VRML V1.0 ascii")) return parse_inventor(source, FileFormat::kVrml1);
+  if (line.starts_with("#VRML V2.0 utf8")) return parse_vrml2(source);
+  if (line.find("binary") != std::string_view::npos)
+    return source.bad_line(line.data(),
+                           "binary Inventor files are not read: write it as ascii, for example with ivcat");
+  return source.bad_line(line.data(),
+                         "only Inventor 2 in ascii, VRML 1.0 in ascii and VRML 2.0 in utf8 are read");
+}
+
 Result<MeshFile> parse_content(const Source& source) {
   const std::string_view bytes = source.bytes;
   if (bytes.empty()) return fail(ErrorCode::kUnreadable, "the file is empty", {source.name, {}, {}});
@@ -141,6 +159,8 @@ Result<MeshFile> parse_content(const Source& source) {
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply "))
     return parse_ply(source);
   if (stl_binary_size(bytes) == bytes.size()) return parse_stl_binary(source);
+  if (is_gltf(bytes)) return parse_gltf(source);
+  if (bytes.starts_with("#Inventor ") || bytes.starts_with("#VRML ")) return parse_scene_file(source);
 
   TextCursor text(bytes, '#');
   text.skip_to_content();
@@ -155,8 +175,14 @@ Result<MeshFile> parse_content(const Source& source) {
     return source.bad_line(bytes.data(),
                            "a PLY file begins with a line 'ply', this one with " + TextCursor(bytes).found());
   if (named == FileFormat::kOff) return parse_off(source);
+  if (named == FileFormat::kGltf) return parse_gltf(source);
+  if (named == FileFormat::kInventor || named == FileFormat::kVrml1 || named == FileFormat::kVrml2)
+    return source.bad_line(
+        bytes.data(), "an Inventor or VRML file begins with its name and version after a #, this one with " +
+                          TextCursor(bytes).found());
   if (named == FileFormat::kObj || is_obj_keyword(word)) return parse_obj(source);
-  return fail(ErrorCode::kUnreadable, "the content is none of PLY, OBJ, OFF, STL", {source.name, {}, {}});
+  return fail(ErrorCode::kUnreadable, "the content is none of PLY, OBJ, OFF, STL, glTF, Inventor, VRML",
+              {source.name, {}, {}});
 }
 
 /// Refuses what no encoder could write: channels of the wrong size, indices and offsets that point nowhere.
@@ -187,18 +213,20 @@ Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& opti
   VKMESH_CHECK(check(mesh.point_channels, mesh.points.size()));
   VKMESH_CHECK(check(mesh.corner_channels, mesh.corners.size()));
   VKMESH_CHECK(check(mesh.face_channels, mesh.face_count()));
+  const bool triangles_only = options.format == FileFormat::kStl || options.format == FileFormat::kGltf;
+  const std::string format_name = options.format == FileFormat::kStl ? "STL" : "glTF";
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const std::size_t corners = mesh.face(f).size();
     if (corners < 3)
       return fail(ErrorCode::kUnsuitable,
                   "face " + std::to_string(f) + " has " + std::to_string(corners) + " corners");
-    if (corners > 3 && options.format == FileFormat::kStl)
-      return fail(ErrorCode::kUnsuitable,
-                  "face " + std::to_string(f) + " has " + std::to_string(corners) +
-                      " corners and STL holds triangles only: triangulate the mesh first");
+    if (corners > 3 && triangles_only)
+      return fail(ErrorCode::kUnsuitable, "face " + std::to_string(f) + " has " + std::to_string(corners) +
+                                              " corners and " + format_name +
+                                              " holds triangles only: triangulate the mesh first");
   }
-  if (options.format == FileFormat::kStl && options.encoding == FileEncoding::kBinaryBigEndian)
-    return fail(ErrorCode::kUsage, "STL has no big-endian form");
+  if (triangles_only && options.encoding == FileEncoding::kBinaryBigEndian)
+    return fail(ErrorCode::kUsage, format_name + " has no big-endian form");
   return {};
 }
 
@@ -216,6 +244,14 @@ Result<Notes> encode(const IndexedFaceSet& mesh, const WriteOptions& options, Ou
       break;
     case FileFormat::kStl:
       encode_stl(mesh, options, out, notes);
+      break;
+    case FileFormat::kGltf:
+      VKMESH_CHECK(encode_gltf(mesh, options, out, notes));
+      break;
+    case FileFormat::kInventor:
+    case FileFormat::kVrml1:
+    case FileFormat::kVrml2:
+      encode_scene(mesh, options, out, notes);
       break;
   }
   VKMESH_CHECK(out.finish());
@@ -247,7 +283,9 @@ Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions&
   return detail::catching([&]() -> Result<MeshFile> {
     VKMESH_TRY(const detail::Content content, detail::read_content(path, options.progress));
     const std::string name = path == "-" ? "standard input" : path.string();
-    VKMESH_TRY(MeshFile file, detail::parse_content({content.bytes.view(), name, options.progress, 0.5}));
+    const std::filesystem::path folder = path.parent_path();
+    VKMESH_TRY(MeshFile file, detail::parse_content({content.bytes.view(), name, options.progress, 0.5,
+                                                     path == "-" ? nullptr : &folder}));
     file.gzip = content.gzip;
     return file;
   });
@@ -286,7 +324,8 @@ Result<WriteOptions> write_options_for(const std::filesystem::path& path) {
     }
     options.format = *format;
     options.gzip = hint.gzip;
-    if (*format == FileFormat::kObj || *format == FileFormat::kOff) options.encoding = FileEncoding::kAscii;
+    if (*format != FileFormat::kPly && *format != FileFormat::kStl && hint.extension != "glb")
+      options.encoding = FileEncoding::kAscii;
     return options;
   });
 }

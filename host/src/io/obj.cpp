@@ -7,7 +7,9 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <vkmesh/handles.h>
@@ -20,9 +22,8 @@ namespace vkmesh::detail {
 namespace {
 
 // Keywords that are passed over. Those of the second list may go on over several lines.
-constexpr std::array<std::string_view, 12> kNames = {"g",        "s",        "o",          "mg",
-                                                     "usemtl",   "mtllib",   "usemap",     "maplib",
-                                                     "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+constexpr std::array<std::string_view, 9> kNames = {
+    "s", "mg", "mtllib", "usemap", "maplib", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 constexpr std::array<std::string_view, 24> kIgnored = {
     "p",    "l",    "vp", "deg", "bmat", "step",  "cstype", "curv",  "curv2", "surf", "parm", "trim",
     "hole", "scrv", "sp", "end", "con",  "bevel", "lod",    "ctech", "stech", "bzp",  "bsp",  "cdc"};
@@ -48,6 +49,44 @@ struct Attribute {
 struct Highest {
   std::uint64_t index = 0;
   const char* at = nullptr;
+};
+
+/// Which of the names that `usemtl`, or `g` and `o`, gave is in force at each face.
+class FaceLabels {
+ public:
+  /// The faces from number `face` on have this name. Faces before the first one have the empty name.
+  void set(std::string_view name, std::size_t face) {
+    if (!named_ && face > 0) {
+      numbers_[{}] = 0;
+      labels_.emplace_back();
+      of_face_.assign(face, 0);
+    }
+    named_ = true;
+    name_ = name;
+    number_ = kInvalid;
+  }
+  void add_face() {
+    if (!named_) return;
+    if (number_ == kInvalid) {
+      const auto [found, is_new] = numbers_.try_emplace(name_, static_cast<std::uint32_t>(labels_.size()));
+      if (is_new) labels_.emplace_back(name_);
+      number_ = found->second;
+    }
+    of_face_.push_back(number_);
+  }
+  /// A channel, when any face has a name.
+  void keep(const char* channel, IndexedFaceSet& mesh) {
+    if (labels_.empty() || (labels_.size() == 1 && labels_[0].empty())) return;
+    mesh.face_channels.push_back({channel, 1, std::move(of_face_), std::move(labels_)});
+  }
+
+ private:
+  bool named_ = false;
+  std::string_view name_;
+  std::uint32_t number_ = kInvalid;
+  std::map<std::string_view, std::uint32_t> numbers_;
+  std::vector<std::string> labels_;
+  std::vector<std::uint32_t> of_face_;
 };
 
 class ObjReader {
@@ -80,6 +119,10 @@ class ObjReader {
         VKMESH_CHECK(texture_coordinates());
       } else if (keyword == "vn") {
         for (int k = 0; k < 3; ++k) VKMESH_CHECK(value("a normal", normal_.values));
+      } else if (keyword == "usemtl") {
+        materials_.set(name(), faces_);
+      } else if (keyword == "g" || keyword == "o") {
+        groups_.set(name(), faces_);
       } else if (is_one_of(keyword, kNames)) {
         ++ignored_[keyword];
         text_.skip_to_line_end();
@@ -116,6 +159,15 @@ class ObjReader {
       text_.accept('\r');
       text_.accept('\n');
     }
+  }
+
+  /// The rest of the line, which may be several words.
+  std::string_view name() {
+    text_.skip_blanks();
+    const char* from = text_.at();
+    const char* to = from;
+    while (!text_.word().empty()) to = text_.at();
+    return {from, static_cast<std::size_t>(to - from)};
   }
 
   void skip_statement() {
@@ -247,6 +299,9 @@ class ObjReader {
     if (count < 3) return source_.bad_line(line, "a face has " + std::to_string(count) + " corners");
     if (!collector.end_face(count))
       return source_.bad_line(line, "the faces have more corners than 32-bit indices can number");
+    ++faces_;
+    materials_.add_face();
+    groups_.add_face();
     return {};
   }
 
@@ -263,6 +318,8 @@ class ObjReader {
     VKMESH_CHECK(check(highest_normal_, normal_.count(), "vn"));
     keep(uv_, mesh);
     keep(normal_, mesh);
+    materials_.keep("material", mesh);
+    groups_.keep("group", mesh);
     if (!colors_.empty()) {
       if (colors_.size() == 3 * mesh.points.size())
         mesh.point_channels.push_back(color_channel(std::move(colors_), 3, whole_colors_));
@@ -306,10 +363,63 @@ class ObjReader {
   MeshFile file_;
   Attribute uv_, normal_;
   Highest highest_point_, highest_uv_, highest_normal_;
+  FaceLabels materials_, groups_;
+  std::size_t faces_ = 0;
   std::vector<float> colors_;
   bool whole_colors_ = true;
   std::size_t weights_ = 0, alphas_ = 0, thirds_ = 0;
   std::map<std::string_view, std::size_t> ignored_;
+};
+
+/// The names of faces, for the writer.
+class OutLabels {
+ public:
+  OutLabels(const char* keyword, const char* name, const IndexedFaceSet& mesh) : keyword_(keyword) {
+    const Channel* found = find_channel(mesh.face_channels, name);
+    if (found == nullptr || found->components != 1) return;
+    bool fits = !found->labels.empty() && std::all_of(found->labels.begin(), found->labels.end(), is_name);
+    for (std::size_t f = 0; fits && f < mesh.face_count(); ++f)
+      fits = number(*found, f) < found->labels.size();
+    if (fits) channel_ = found;
+  }
+
+  [[nodiscard]] const Channel* channel() const { return channel_; }
+
+  /// A line where face f has another name than the one before it.
+  void put(std::size_t f, Output& out) {
+    if (channel_ == nullptr) return;
+    const std::string& label = channel_->labels[number(*channel_, f)];
+    if (label == current_) return;
+    current_ = label;
+    out.put(std::string(keyword_) + (label.empty() ? "" : " ") + std::string(label) + "\n");
+  }
+
+ private:
+  /// What a line can hold and a reader gets back.
+  static bool is_name(const std::string& label) {
+    const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+    return std::none_of(label.begin(), label.end(),
+                        [](char c) { return c == '#' || c == '\\' || (c >= 0 && c < ' ' && c != '\t'); }) &&
+           (label.empty() || (!blank(label.front()) && !blank(label.back())));
+  }
+
+  /// Beyond every label for what is none.
+  static std::uint64_t number(const Channel& channel, std::size_t f) {
+    return std::visit(
+        [&](const auto& v) {
+          using T = typename std::decay_t<decltype(v)>::value_type;
+          constexpr std::uint64_t kNone = ~std::uint64_t{0};
+          if constexpr (std::is_integral_v<T>)
+            return v[f] < 0 ? kNone : static_cast<std::uint64_t>(v[f]);
+          else
+            return kNone;
+        },
+        channel.values);
+  }
+
+  const char* keyword_;
+  const Channel* channel_ = nullptr;
+  std::string_view current_;
 };
 
 template <std::size_t N>
@@ -385,8 +495,10 @@ void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
   for (const Channel& c : mesh.corner_channels)
     if (&c != uv.of_corners && &c != normal.of_corners)
       note_left_out(notes, "corner", c, "OBJ holds normals and uv of corners");
+  OutLabels material("usemtl", "material", mesh), group("g", "group", mesh);
   for (const Channel& c : mesh.face_channels)
-    note_left_out(notes, "face", c, "OBJ has no attributes of faces");
+    if (&c != material.channel() && &c != group.channel())
+      note_left_out(notes, "face", c, "OBJ holds names of materials and groups of faces");
 
   for (const std::string& line : comment_lines(options.comment)) out.put("# " + line + "\n");
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -406,6 +518,8 @@ void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
   uv.put_rows(mesh, out);
   normal.put_rows(mesh, out);
   for (std::size_t f = 0, corner = 0; f < mesh.face_count(); ++f) {
+    group.put(f, out);
+    material.put(f, out);
     out.put("f");
     for (const std::uint32_t c : mesh.face(f)) {
       char* to = out.room(128);

@@ -38,9 +38,7 @@ class OffReader {
     VKMESH_CHECK(header());
     VKMESH_CHECK(vertices());
     VKMESH_CHECK(faces());
-    text_.skip_to_content();
-    if (!text_.at_end())
-      return source_.bad_line(text_.at(), "the file holds more than its header promises: " + text_.found());
+    VKMESH_CHECK(rest());
     IndexedFaceSet& out = mesh();
     if (normals_) out.point_channels.push_back({"normal", 3, std::move(normal_values_)});
     if (colors_ && color_.components > 0)
@@ -73,6 +71,8 @@ class OffReader {
       uvs_ = prefix("ST");
       colors_ = prefix("C");
       normals_ = prefix("N");
+      // Written the other way round, too; the order of the numbers is the same.
+      colors_ = colors_ || prefix("C");
       if (!keyword.empty()) return source_.bad_line(line, "only OFF files in three dimensions are read");
       text_.skip_to_content();
       const TextCursor counts = text_;
@@ -201,6 +201,18 @@ class OffReader {
     return {};
   }
 
+  /// Real files hold more than they promise; other programs read what is promised.
+  Result<void> rest() {
+    std::size_t lines = 0;
+    for (text_.skip_to_content(); !text_.at_end(); text_.skip_to_content()) {
+      if (Source::due(lines++)) VKMESH_CHECK(source_.tick(text_.at()));
+      text_.skip_to_line_end();
+    }
+    if (lines > 0)
+      file_.notes.push_back(std::to_string(lines) + " lines behind what the header promises ignored");
+    return {};
+  }
+
   /// Colours of one number are indices into a table that is not in the file; they are counted as ignored.
   Result<void> face_color(std::size_t f, LineTail& color) {
     const std::size_t before = color.values.size();
@@ -270,7 +282,6 @@ void encode_off(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
 
   std::string header = std::string(uv != nullptr ? "ST" : "") + (color != nullptr ? "C" : "") +
                        (normal != nullptr ? "N" : "") + "OFF\n";
-  for (const std::string& line : comment_lines(options.comment)) header += "# " + line + "\n";
   header += std::to_string(mesh.points.size()) + " " + std::to_string(mesh.face_count()) + " 0\n";
   out.put(header);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -295,6 +306,8 @@ void encode_off(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     if (face_color != nullptr) put_values(out, *face_color, f);
     out.put("\n");
   }
+  // At the end: some readers take nothing but the counts behind the first line.
+  for (const std::string& line : comment_lines(options.comment)) out.put("# " + line + "\n");
 }
 
 }  // namespace vkmesh::detail

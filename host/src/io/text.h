@@ -74,6 +74,8 @@ class TextCursor {
   bool number_prefix(T& value) {
     skip_blanks();
     const char* from = at_;
+    if constexpr (std::is_integral_v<T>)
+      if (short_number(value)) return true;
     if (from != end_ && *from == '+' && from + 1 != end_ && from[1] != '-' && from[1] != '+') ++from;
     const auto [to, code] = std::from_chars(from, end_, value);
     if (code == std::errc{}) {
@@ -114,6 +116,23 @@ class TextCursor {
   static bool ends_line(char c) { return c == '\n' || c == '\r'; }
   bool is_separator() const {
     return at_ == end_ || is_blank(*at_) || ends_line(*at_) || (comment_ != 0 && *at_ == comment_);
+  }
+
+  /// Digits so few that any number of them fits, as nearly all indices are. std::from_chars weighs each
+  /// digit, which takes three times as long.
+  template <class T>
+  bool short_number(T& value) {
+    const char* p = at_;
+    unsigned number = 0;
+    for (int room = std::min(std::numeric_limits<T>::digits10, 9); room > 0 && p != end_; --room, ++p) {
+      const unsigned digit = static_cast<unsigned>(*p) - '0';
+      if (digit > 9) break;
+      number = 10 * number + digit;
+    }
+    if (p == at_ || (p != end_ && static_cast<unsigned>(*p) - '0' <= 9)) return false;
+    value = static_cast<T>(number);
+    at_ = p;
+    return true;
   }
 
   /// A number that its type cannot hold: too small is 0 (or the nearest subnormal), too large is refused.

@@ -1,4 +1,4 @@
-// Reading and writing mesh files: PLY, OBJ, OFF, STL, each also gzipped.
+// Reading and writing mesh files: PLY, OBJ, OFF, STL, glTF, OpenInventor and VRML, each also gzipped.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 
 namespace vkmesh {
 
-enum class FileFormat { kPly, kObj, kOff, kStl };
+enum class FileFormat { kPly, kObj, kOff, kStl, kGltf, kInventor, kVrml1, kVrml2 };
 enum class FileEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
-/// "ply", "obj", "off", "stl".
+/// "ply", "obj", "off", "stl", "gltf", "iv", "vrml1", "vrml2".
 [[nodiscard]] std::string name_of(FileFormat format);
 /// "ascii", "binary_little_endian", "binary_big_endian".
 [[nodiscard]] std::string name_of(FileEncoding encoding);
@@ -54,7 +54,7 @@ struct ReadOptions {
 
 struct WriteOptions {
   FileFormat format = FileFormat::kPly;
-  /// OBJ and OFF are text whatever this says; STL has no big-endian form.
+  /// OBJ, OFF, Inventor and VRML are text whatever this says; STL has no big-endian form.
   FileEncoding encoding = FileEncoding::kBinaryLittleEndian;
   bool gzip = false;
   /// What the file's comment says made it; left out of formats without comments. Empty for none.
