@@ -93,12 +93,14 @@ bool write_seeds(const std::filesystem::path& folder) {
     const auto bytes = bytes_of(seed.mesh);
     std::filesystem::create_directories(folder / "consolidate");
     written = write(folder / "consolidate" / seed.name, bytes.data(), bytes.size()) && written;
-    for (const char* extension : {"ply", "obj", "off", "stl"}) {
+    for (const char* extension : {"ply", "obj", "off", "stl", "iv", "vrml1", "wrl", "gltf", "glb"}) {
       auto options = write_options_for(std::string("seed.") + extension);
       if (!options) return false;
       std::filesystem::create_directories(folder / extension);
+      const bool chosen = options->format == FileFormat::kPly || options->format == FileFormat::kStl;
       for (const FileEncoding encoding :
            {FileEncoding::kAscii, FileEncoding::kBinaryLittleEndian, FileEncoding::kBinaryBigEndian}) {
+        if (!chosen && encoding != options->encoding) continue;  // The extension says which.
         options->encoding = encoding;
         const auto encoded = encode_mesh(seed.mesh, *options);
         if (!encoded) continue;  // Polygons into STL, which also has no big-endian form.
