@@ -82,6 +82,7 @@ class ReadingFiles {
 namespace step {
 inline const std::string kReadAscii = "read ascii PLY";
 inline const std::string kReadBinary = "read binary PLY";
+inline const std::string kSoup = "soup to half-edges";
 inline const std::string kConstruction = "half-edge construction";
 inline const std::string kNeighbours = "neighbour lists";
 inline const std::string kNormals = "vertex normals";
@@ -92,6 +93,7 @@ inline const std::string kDecimation = "decimation";
 
 // Each adds its rows. `input` and `files` must outlive the programme.
 void add_reading(Programme& programme, const ReadingFiles& files);
+void add_soup(Programme& programme, const Input& input);
 Result<void> add_host(Programme& programme, const Input& input);
 Result<void> add_device(Programme& programme, const Input& input, const std::string& device);
 void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& files);

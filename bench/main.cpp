@@ -49,6 +49,7 @@ Result<Programme> programme_for(const Options& options, const Input& input, cons
   Programme programme;
   programme.libraries.push_back({"vkmesh", VKMESH_VERSION});
   add_reading(programme, files);
+  add_soup(programme, input);
   VKMESH_CHECK(add_host(programme, input));
 #ifdef VKMESH_BENCH_DEVICE
   if (options.device != "none") VKMESH_CHECK(add_device(programme, input, options.device));

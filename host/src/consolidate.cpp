@@ -38,6 +38,7 @@ void turn_over(IndexedFaceSet& mesh, const std::vector<std::uint8_t>& faces) {
 /// The faces of closed components that were turned in part and lie inside out.
 std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail::Matching& matching,
                                        const std::vector<std::uint8_t>& turned) {
+  if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return {};
   const std::size_t faces = mesh.face_count();
   std::vector<std::uint32_t> face_of(mesh.corners.size());
   for (std::uint32_t f = 0, c = 0; f < faces; ++f)
@@ -132,7 +133,7 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     result.source_point = std::move(repaired.source_point);
     result.source_face = std::move(repaired.source_face);
     report.non_manifold_vertices = std::max(report.non_manifold_vertices, report.split_points);
-    VKMESH_TRY(matching, match(result.face_set));
+    matching = std::move(repaired.matching);
     const std::vector<std::uint8_t> inward = inward_faces(result.face_set, matching, repaired.turned);
     if (std::find(inward.begin(), inward.end(), 1) != inward.end()) {
       turn_over(result.face_set, inward);
@@ -142,9 +143,6 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
       }
       VKMESH_TRY(matching, match(result.face_set));
     }
-    if (!matching.report.manifold())
-      return fail(ErrorCode::kInternal,
-                  "consolidation left a mesh that is no oriented manifold: " + matching.report.defects);
   }
   if (!options.keep_isolated_points) {
     drop_isolated_points(result);

@@ -207,12 +207,27 @@ class Repair {
       mesh_.points.push_back(input_.points[source_point_[p]]);
   }
 
+  /// Whether the faces are an oriented manifold now.
+  Result<bool> done() {
+    bool triangles = true;
+    for (std::size_t f = 0; f < source_face_.size(); ++f) triangles = triangles && mesh_.face(f).size() == 3;
+    // Of triangles the faces of corners need not be looked up.
+    const std::span<const std::uint32_t> offsets = mesh_.face_offsets;
+    VKMESH_TRY(matching_,
+               match_edges(mesh_.points.size(), mesh_.corners, triangles ? offsets.first(0) : offsets));
+    return matching_.report.manifold();
+  }
+
   Repaired finish() {
     mesh_.normalize_offsets();
+    source_point_.resize(mesh_.points.size());
+    if (report_.added_points == 0) std::iota(source_point_.begin(), source_point_.end(), 0u);
+    turned_.resize(source_face_.size(), 0);
     mesh_.point_channels = gather(input_.point_channels, source_point_);
     mesh_.corner_channels = gather(input_.corner_channels, source_corner_);
     mesh_.face_channels = gather(input_.face_channels, source_face_);
-    return {std::move(mesh_), std::move(source_point_), std::move(source_face_), std::move(turned_)};
+    return {std::move(mesh_), std::move(source_point_), std::move(source_face_), std::move(turned_),
+            std::move(matching_)};
   }
 
  private:
@@ -382,6 +397,7 @@ class Repair {
   std::vector<std::uint32_t> mate_;     ///< Of each half-edge, the one across its edge, or kInvalid.
   std::vector<std::vector<std::uint32_t>> crowded_;  ///< The half-edges of edges of three or more faces.
   std::vector<std::uint8_t> turned_;
+  Matching matching_;
   EarClipper clipper_;
   std::vector<std::uint32_t> scratch_;
 };
@@ -397,6 +413,9 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   Repair steps(mesh, report);
   steps.take_faces();
   VKMESH_CHECK(tick(0.2));
+  // Most meshes that need mending at all have a few degenerate faces, and that is all.
+  VKMESH_TRY(bool done, steps.done());
+  if (done) return steps.finish();
   steps.remove_duplicates();
   VKMESH_CHECK(tick(0.4));
   steps.join_edges();
@@ -406,6 +425,8 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   steps.turn_faces();
   steps.split_points();
   VKMESH_CHECK(tick(0.9));
+  VKMESH_TRY(done, steps.done());
+  if (!done) return fail(ErrorCode::kInternal, "mending left a mesh that is no oriented manifold");
   return steps.finish();
 }
 

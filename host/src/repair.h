@@ -9,6 +9,8 @@
 #include <vkmesh/progress.h>
 #include <vkmesh/result.h>
 
+#include "edge_matching.h"
+
 namespace vkmesh::detail {
 
 struct Repaired {
@@ -16,6 +18,7 @@ struct Repaired {
   std::vector<std::uint32_t> source_point, source_face;
   /// For each face, whether it runs the other way than in the input.
   std::vector<std::uint8_t> turned;
+  Matching matching;  ///< Of `mesh`.
 };
 
 /// Steps 2 to 5 of consolidate(): the result is an oriented manifold. Counts in `report` what it does.
