@@ -38,7 +38,7 @@ Consolidated mended(const IndexedFaceSet& mesh, const ConsolidateOptions& option
   CHECK(again->manifold());
   // No point moved.
   std::size_t moved = 0;
-  for (std::size_t p = 0; p < set.points.size() && !options.weld; ++p)
+  for (std::size_t p = 0; p < set.points.size(); ++p)
     moved += set.points[p] != mesh.points[result->source_point.empty() ? p : result->source_point[p]];
   CHECK(moved == 0);
   const ConsolidateReport& report = result->report;
@@ -189,14 +189,37 @@ TEST_CASE("a point where fans meet is split, attributes with it", "[repair]") {
 }
 
 TEST_CASE("three faces on an edge: the flattest two stay together", "[repair]") {
-  // fin(): two coplanar triangles below and above the edge, and one that stands up.
-  const Consolidated result = mended(test::fin());
-  CHECK(result.report.split_edges == 1);
-  CHECK(result.report.non_manifold_edges == 1);
-  const SurfaceTopology t = surface_topology(result.face_set).value();
-  REQUIRE(t.components.size() == 2);
-  CHECK(t.components[0].faces == 2);
-  CHECK(t.component_of_face[0] == t.component_of_face[1]);
+  // fin(): two coplanar triangles on both sides of the edge, and one that stands up, or hangs down.
+  for (const float side : {1.0f, -1.0f}) {
+    IndexedFaceSet mesh = test::fin();
+    mesh.points[4].z *= side;
+    const Consolidated result = mended(mesh);
+    CHECK(result.report.split_edges == 1);
+    CHECK(result.report.non_manifold_edges == 1);
+    const SurfaceTopology t = surface_topology(result.face_set).value();
+    REQUIRE(t.components.size() == 2);
+    CHECK(t.components[0].faces == 2);
+    CHECK(t.component_of_face[0] == t.component_of_face[1]);
+  }
+}
+
+TEST_CASE("four faces on an edge: those stay together between which solid lies", "[repair]") {
+  // Around the x axis at 0, 90, 180 and 270 degrees; the solid is from 0 to 90 and from 180 to 270, or the
+  // rest.
+  IndexedFaceSet mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}, {0.5f, 0, 1}, {0.5f, -1, 0}, {0.5f, 0, -1}};
+  for (const bool other : {false, true}) {
+    CAPTURE(other);
+    mesh.corners.clear();
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      if ((i % 2 == 1) != other)
+        mesh.corners.insert(mesh.corners.end(), {0, 1, 2 + i});
+      else
+        mesh.corners.insert(mesh.corners.end(), {1, 0, 2 + i});
+    }
+    const std::vector<std::uint32_t> of = surface_topology(mended(mesh).face_set)->component_of_face;
+    CHECK(of == (other ? std::vector<std::uint32_t>{0, 1, 1, 0} : std::vector<std::uint32_t>{0, 0, 1, 1}));
+  }
 }
 
 TEST_CASE("two cubes that touch along an edge become two closed cubes", "[repair]") {
@@ -204,12 +227,14 @@ TEST_CASE("two cubes that touch along an edge become two closed cubes", "[repair
     CAPTURE(inside_out);
     // The second cube stands diagonally beside the first: edge (1,1,z) in common.
     IndexedFaceSet mesh = test::both(test::cube(), test::cube(), Vec3(1.0f, 1.0f, 0.0f));
-    mesh = weld(mesh)->mesh;
     if (inside_out)
       for (std::size_t c = 36; c < mesh.corners.size(); c += 3)
         std::swap(mesh.corners[c], mesh.corners[c + 1]);
-    REQUIRE(surface_topology(mesh)->whole.non_manifold_edges == 1);
-    const Consolidated result = mended(mesh);
+    REQUIRE(surface_topology(weld(mesh)->mesh)->whole.non_manifold_edges == 1);
+    ConsolidateOptions options;
+    options.weld = WeldOptions{};
+    const Consolidated result = mended(mesh, options);
+    CHECK(result.report.welded_points == 2);
     const SurfaceTopology t = surface_topology(result.face_set).value();
     REQUIRE(t.components.size() == 2);
     for (const Topology& c : t.components) {
@@ -262,13 +287,17 @@ TEST_CASE("faces are turned to agree, and closed components outward", "[repair]"
 TEST_CASE("a consistent surface that faces inward is left so: it may be a room", "[repair]") {
   IndexedFaceSet mesh = test::both(test::icosphere(1), test::bow_tie(), Vec3(9.0f));
   for (std::size_t c = 0; c < 3 * 80; c += 3) std::swap(mesh.corners[c], mesh.corners[c + 1]);
+  CHECK(mended(mesh).report.flipped_faces == 0);
+  // Nor does it turn because another component has to.
+  std::swap(mesh.corners[3 * 80], mesh.corners[3 * 80 + 1]);
   const Consolidated result = mended(mesh);
-  CHECK(result.report.flipped_faces == 0);
+  CHECK(result.report.flipped_faces == 1);
+  CHECK(std::equal(mesh.corners.begin(), mesh.corners.begin() + 3 * 80, result.face_set.corners.begin()));
 }
 
 TEST_CASE("an open sheet keeps the orientation of its larger part", "[repair]") {
   IndexedFaceSet mesh = test::grid(4, 4);
-  for (const std::size_t f : {3u, 9u, 20u}) std::swap(mesh.corners[3 * f], mesh.corners[3 * f + 2]);
+  for (const std::size_t f : {0u, 9u, 20u}) std::swap(mesh.corners[3 * f], mesh.corners[3 * f + 2]);
   const Consolidated result = mended(mesh);
   CHECK(result.report.flipped_faces == 3);
   for (std::size_t f = 0; f < result.face_set.face_count(); ++f) {

@@ -169,11 +169,13 @@ TEST_CASE("element defects are counted", "[topology]") {
     mesh.corners.insert(mesh.corners.end(), face);
     mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
   };
-  add({3, 1, 0, 2});  // Face 0 from another corner.
-  add({2, 0, 1, 3});  // Its reverse.
-  add({0, 2, 1, 3});  // Its points in another order: no duplicate.
-  add({0, 1, 2});     // A part of it.
-  add({4, 5, 4});     // Degenerate.
+  add({3, 1, 0, 2});     // Face 0 from another corner.
+  add({2, 0, 1, 3});     // Its reverse.
+  add({0, 2, 1, 3});     // Its points in another order: no duplicate.
+  add({0, 1, 2});        // A part of it.
+  add({0, 1, 3, 7, 2});  // Two that agree in three points.
+  add({0, 1, 3, 5, 2});
+  add({4, 5, 4});  // Degenerate.
   mesh.points.push_back(mesh.points[3]);
   mesh.points.emplace_back(-0.0f, 0.0f, 0.0f);
   mesh.points.emplace_back(7.0f, 0.0f, 0.0f);
