@@ -183,6 +183,10 @@ TEST_CASE("Inventor transforms move the points", "[io][inventor]") {
       {8, 1, 3});
   // Turned back by a quarter (2, -1, 3), scaled (20, -1, 3), turned (1, 20, 3): y is stretched.
   check_near(moved("Transform { scaleFactor 10 1 1 scaleOrientation 0 0 1 " + quarter + " }"), {1, 20, 3});
+  // The axes of the scale are turned before the rotation: z is stretched to 6, then x and y turn.
+  check_near(moved("Transform { rotation 0 0 1 " + quarter + " scaleFactor 1 2 1 scaleOrientation 1 0 0 " +
+                   quarter + " }"),
+             {-2, 1, 6});
   CHECK(moved("Transform { rotation 0 0 0 1 }") == Vec3(1, 2, 3));
   CHECK_THAT(
       scene_error("Scale { scaleFactor 1e38 1 1 } Scale { scaleFactor 1e38 1 1 }" + kPoints + kTriangle)

@@ -106,6 +106,10 @@ TEST_CASE("VRML 2 groups move and choose their children", "[io][vrml]") {
              {8, 1, 3});
   check_near(first("Transform { scale 10 1 1 scaleOrientation 0 0 1 " + quarter + " children ", "}"),
              {1, 20, 3});
+  check_near(first("Transform { rotation 0 0 1 " + quarter + " scale 1 2 1 scaleOrientation 1 0 0 " +
+                       quarter + " children ",
+                   "}"),
+             {-2, 1, 6});
   CHECK(first("Transform { translation 1 0 0 children Transform { scale 2 2 2 children [ ", "] } }") ==
         Vec3(3, 4, 6));
   // A transform ends with its node.
