@@ -31,7 +31,6 @@ Result<void> add_host(Programme& programme, const Input& input) {
   const auto mesh = std::make_shared<HalfEdgeMesh>(std::move(half_edges));
   VKMESH_TRY(NodeNeighbours lists, node_neighbours(*mesh));
   const auto neighbours = std::make_shared<NodeNeighbours>(std::move(lists));
-  const auto decimated = std::make_shared<Decimated>();
 
   programme.contestants.push_back(
       {step::kConstruction, name, [&input] { return timed([&] { return to_half_edge_mesh(input.mesh); }); }});
@@ -46,21 +45,28 @@ Result<void> add_host(Programme& programme, const Input& input) {
          options.iterations = kSmoothingSteps;
          return timed([&] { return laplacian_smoothing(*neighbours, input.mesh.points, options); });
        }});
-  programme.contestants.push_back({step::kDecimation, name,
-                                   [&input, mesh, decimated]() -> Result<double> {
-                                     DecimateOptions options;
-                                     options.target_faces = input.decimation_target;
-                                     const Stopwatch watch;
-                                     auto result = decimate(*mesh, input.mesh.points, options);
-                                     const double milliseconds = watch.milliseconds();
-                                     if (!result) return tl::unexpected<Error>(result.error());
-                                     *decimated = std::move(*result);
-                                     return milliseconds;
-                                   },
-                                   [decimated] {
-                                     const auto corners = decimated->mesh.origins();
-                                     return Surface{decimated->positions, {corners.begin(), corners.end()}};
-                                   }});
+  for (const auto operation : {DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse}) {
+    const auto decimated = std::make_shared<Decimated>();
+    programme.contestants.push_back(
+        {step::kDecimation,
+         operation == DecimateOperation::kEdgeCollapse ? name + ", edge collapse"
+                                                       : name + ", half-edge collapse",
+         [&input, operation, decimated]() -> Result<double> {
+           DecimateOptions options;
+           options.operation = operation;
+           options.target_faces = input.decimation_target;
+           const Stopwatch watch;
+           auto result = decimate(TriangleSurface{input.mesh.points, input.mesh.corners}, options);
+           const double milliseconds = watch.milliseconds();
+           if (!result) return tl::unexpected<Error>(result.error());
+           *decimated = std::move(*result);
+           return milliseconds;
+         },
+         [decimated] {
+           const auto corners = decimated->mesh.origins();
+           return Surface{decimated->positions, {corners.begin(), corners.end()}};
+         }});
+  }
   return {};
 }
 

@@ -1,9 +1,10 @@
-// vkmesh simplify: fewer triangles, by half-edge collapse with quadric error.
+// vkmesh simplify: fewer triangles, by collapsing edges with quadric error.
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 
 #include <vkmesh/decimation/decimate.h>
 
@@ -16,9 +17,12 @@ namespace {
 constexpr double kRadians = std::numbers::pi / 180;
 
 struct SimplifyOptions {
+  std::string operation = "edge-collapse";
+  std::string placement = "optimal";
+  std::string boundary = "in-shape";
   std::optional<double> ratio;
-  std::optional<std::size_t> faces;
-  std::optional<double> error;
+  std::optional<std::size_t> faces, vertices;
+  std::optional<double> error, relative_error, time_limit;
   double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
 };
 
@@ -33,7 +37,11 @@ std::string why(DecimateStop stop, const SimplifyOptions& options) {
     case DecimateStop::kTargetReached:
       return "the target was reached";
     case DecimateStop::kErrorBound:
-      return "the next collapse would exceed the error of " + brief(*options.error);
+      return "what is left is illegal or would exceed the error of " +
+             (options.error ? brief(*options.error)
+                            : brief(100 * options.relative_error.value_or(0)) + " % of the diagonal");
+    case DecimateStop::kTimeLimit:
+      return "the time was up";
     case DecimateStop::kNoLegalCollapse:
       return "no collapse is left that keeps the surface manifold and folds no face over";
   }
@@ -41,8 +49,13 @@ std::string why(DecimateStop stop, const SimplifyOptions& options) {
 }
 
 Result<void> run(Job& job, const SimplifyOptions& options) {
-  if (!options.ratio && !options.faces && !options.error)
-    return fail(ErrorCode::kUsage, "say when to stop: --ratio, --faces or --error");
+  if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
+      !options.time_limit)
+    return fail(ErrorCode::kUsage,
+                "say when to stop: --ratio, --faces, --vertices, --error, --relative-error or --time-limit");
+  if (options.operation == "half-edge-collapse" && options.placement != "optimal" &&
+      options.placement != "endpoint")
+    return fail(ErrorCode::kUsage, "a half-edge collapse ends in an endpoint: leave --placement out");
   use_host(job);
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
@@ -59,11 +72,17 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   const std::size_t faces = half_edges.face_count();
   DecimateOptions decimation;
   decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
+  if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
+  if (options.placement == "midpoint") decimation.placement = DecimatePlacement::kMidpoint;
+  if (options.placement == "endpoint") decimation.placement = DecimatePlacement::kEndpoint;
+  if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
+  if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
+  decimation.target_faces = options.faces;
+  decimation.target_vertices = options.vertices;
+  decimation.target_ratio = options.ratio;
   decimation.max_error = options.error;
-  if (options.faces) decimation.target_faces = *options.faces;
-  if (options.ratio)
-    decimation.target_faces =
-        static_cast<std::size_t>(std::llround(*options.ratio * static_cast<double>(faces)));
+  decimation.max_relative_error = options.relative_error;
+  decimation.time_limit = options.time_limit;
   VKMESH_TRY(Decimated decimated, job.timed("compute", [&] {
     return decimate(half_edges, input.points, decimation, job.progress("simplifying"));
   }));
@@ -72,17 +91,25 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   IndexedFaceSet output;
   output.points = std::move(decimated.positions);
   output.corners.assign(decimated.mesh.origins().begin(), decimated.mesh.origins().end());
+  if (!input.point_channels.empty() && decimation.operation == DecimateOperation::kEdgeCollapse &&
+      decimation.placement != DecimatePlacement::kEndpoint)
+    job.note("points were moved: each has the attributes of a point that it stands for");
   output.point_channels = gather(input.point_channels, decimated.source_vertex);
   const double ratio =
       faces == 0 ? 1.0 : static_cast<double>(output.face_count()) / static_cast<double>(faces);
   job.json()["result"] = {{"stop", name_of(decimated.stop)},
+                          {"operation", options.operation},
                           {"error", decimated.error},
+                          {"relative_error", decimated.relative_error},
                           {"ratio", ratio},
                           {"collapses", decimated.collapses},
                           {"rejected_link", decimated.rejected_link},
-                          {"rejected_fold_over", decimated.rejected_fold_over}};
+                          {"rejected_fold_over", decimated.rejected_fold_over},
+                          {"rejected_error", decimated.rejected_error},
+                          {"rejected_locked", decimated.rejected_locked}};
   job.row("simplified", "to " + brief(100 * ratio) + " % of " + count_of(faces, "triangle") +
-                            "; largest error " + brief(decimated.error) + " in units of the file");
+                            "; largest error " + brief(decimated.error) + " in units of the file, " +
+                            brief(100 * decimated.relative_error) + " % of the diagonal");
   job.row("stopped", why(decimated.stop, options));
   job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
                            " that would break the manifold, " + grouped(decimated.rejected_fold_over) +
@@ -95,13 +122,35 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
 void add_simplify(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("simplify", "Reduces the number of triangles");
   command->footer(
-      "The cheapest edge is collapsed into one of its ends, again and again, by quadric error. No new points "
-      "are made;\n"
-      "point attributes stay with their points. Runs on the host whatever --device says.\n\n"
-      "Example:\n  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1");
+      "The cheapest edge is collapsed, again and again, by quadric error; the first rule met stops it. "
+      "Point\n"
+      "attributes stay with the points that remain. Runs on the host whatever --device says.\n\n"
+      "Examples:\n"
+      "  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1\n"
+      "  vkmesh simplify data/dragon/dragon_vrip.ply.gz near.ply --relative-error 1e-4 --boundary kept\n"
+      "  vkmesh simplify data/dragon/dragon_vrip.ply.gz few.ply --vertices 5000 --operation "
+      "half-edge-collapse");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<SimplifyOptions>();
+  command
+      ->add_option("--operation", options->operation,
+                   "edge-collapse (default): both ends become one point, which may be new;\n"
+                   "half-edge-collapse: one end moves to the other, no new points are made")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"edge-collapse", "half-edge-collapse"}));
+  command
+      ->add_option(
+          "--placement", options->placement,
+          "Where an edge collapse puts its point: optimal (least error, default), midpoint, endpoint")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"optimal", "midpoint", "endpoint"}));
+  command
+      ->add_option("--boundary", options->boundary,
+                   "kept: boundary points stay; in-shape (default): the boundary's shape counts in\n"
+                   "the error; free: it may shrink")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"kept", "in-shape", "free"}));
   CLI::Option* ratio =
       command->add_option("--ratio", options->ratio, "Stop at this share of the triangles, from 0 to 1")
           ->type_name("R")
@@ -110,9 +159,20 @@ void add_simplify(CLI::App& app, Program& program) {
       ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
       ->type_name("N")
       ->excludes(ratio);
+  command->add_option("--vertices", options->vertices, "Stop at this number of points")
+      ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
+      ->type_name("N");
+  command
+      ->add_option("--relative-error", options->relative_error,
+                   "Do no collapse of a larger error, as a share of the bounding box's diagonal")
+      ->type_name("E")
+      ->check(number_between(0, std::numeric_limits<double>::max()));
+  command->add_option("--time-limit", options->time_limit, "Stop after this many seconds of simplifying")
+      ->type_name("S")
+      ->check(number_between(0, std::numeric_limits<double>::max()));
   command
       ->add_option("--error", options->error,
-                   "Stop before a collapse of a larger error, in units of the file's coordinates: the\n"
+                   "Do no collapse of a larger error, in units of the file's coordinates: the\n"
                    "root of the mean squared distance to the planes of the faces a point stands for")
       ->type_name("E")
       ->check(number_between(0, std::numeric_limits<double>::max()));

@@ -88,6 +88,47 @@ float first_quadrant_angle(float y, float x) {
   return steep ? complement : angle;
 }
 
+float arccosine(float x) {
+  uint magnitude = min(floatBitsToUint(x) & 0x7fffffffu, 0x3f800000u);
+  bool negative = (floatBitsToUint(x) >> 31) != 0u;
+  float size = zero_below(uintBitsToFloat(magnitude), VKMESH_TINY_LENGTH);
+  bool steep = size > 0.5;
+  precise float half_rest = 0.5 * (1.0 - size);
+  precise float square = size * size;
+  float z = zero_below(steep ? half_rest : square, VKMESH_TINY_DIRECTION);
+  float s = steep ? root(z) : (negative ? -size : size);
+  precise float p = VKMESH_ASIN_5;
+  p = p * z + VKMESH_ASIN_4;
+  p = p * z + VKMESH_ASIN_3;
+  p = p * z + VKMESH_ASIN_2;
+  p = p * z + VKMESH_ASIN_1;
+  p = p * z + VKMESH_ASIN_0;
+  precise float more = s * (z * p);
+  precise float complement = VKMESH_HALF_PI_HIGH - (s - (VKMESH_HALF_PI_LOW - more));
+  precise float direct = s + more;
+  precise float twice = 2.0 * (negative ? complement : direct);
+  return steep ? twice : complement;
+}
+
+float exponential(float x) {
+  bool negative = (floatBitsToUint(x) >> 31) != 0u;
+  bool far = (floatBitsToUint(x) & 0x7fffffffu) > VKMESH_EXP_RANGE;
+  float v = zero_below(far ? 0.0 : x, VKMESH_TINY_DIRECTION);
+  precise float shifted = v * VKMESH_LOG2_E + VKMESH_ROUNDING;
+  precise float k = shifted - VKMESH_ROUNDING;
+  precise float rest = (v - k * VKMESH_LN2_HIGH) - k * VKMESH_LN2_LOW;
+  float r = zero_below(rest, VKMESH_TINY_DIRECTION);
+  precise float p = VKMESH_EXP_4;
+  p = p * r + VKMESH_EXP_3;
+  p = p * r + VKMESH_EXP_2;
+  p = p * r + VKMESH_EXP_1;
+  p = p * r + VKMESH_EXP_0;
+  precise float y = 1.0 + (r + (r * r) * p);
+  uint power = floatBitsToUint(shifted) - VKMESH_ROUNDING_BITS;
+  bool in_range = !far && (floatBitsToUint(y) >> 23) + power - 1u < 254u;
+  return in_range ? uintBitsToFloat(floatBitsToUint(y) + (power << 23)) : (negative ? 0.0 : VKMESH_LARGEST);
+}
+
 float squared_length(vec3 v) {
   precise float s = (v.x * v.x + v.y * v.y) + v.z * v.z;
   return s;
@@ -121,6 +162,49 @@ float angle_between(vec3 a, vec3 b) {
   const float along = root(squared_length(zero_below(sum, VKMESH_TINY_LENGTH)));
   precise float angle = 2.0 * first_quadrant_angle(apart, along);
   return angle;
+}
+
+float vector_length(vec3 v) {
+  uvec3 m = floatBitsToUint(v) & 0x7fffffffu;
+  uint largest = max(max(m.x, m.y), m.z);
+  float scale = uintBitsToFloat(max(0x7f000000u - (largest & 0x7f800000u), 0x00800000u));
+  precise vec3 w = v * scale;
+  precise float size = root(squared_length(zero_below(w, VKMESH_TINY_DIRECTION))) * uintBitsToFloat(largest & 0x7f800000u);
+  return size;
+}
+
+float corner_product(vec3 p0, vec3 p1, vec3 p2) {
+  precise vec3 a = p1 - p0;
+  precise vec3 b = p2 - p0;
+  a = zero_below(a, VKMESH_TINY_LENGTH);
+  b = zero_below(b, VKMESH_TINY_LENGTH);
+  precise float s = (a.x * b.x + a.y * b.y) + a.z * b.z;
+  return zero_below(s, VKMESH_TINY_AREA);
+}
+
+float bounded_quotient(float x, float y, float bound, float inverse_bound) {
+  precise float scaled = x * inverse_bound;
+  bool high = scaled >= y, low = -scaled >= y;
+  precise float ratio = (high || low ? 0.0 : x) * reciprocal(y);
+  ratio = zero_below(ratio, VKMESH_TINY_COORDINATE);
+  return y == 0.0 ? 0.0 : (high ? bound : (low ? -bound : ratio));
+}
+
+float cotangent(float product, float twice_area) {
+  return zero_below(bounded_quotient(product, twice_area, VKMESH_COTANGENT_BOUND, VKMESH_COTANGENT_BOUND_INVERSE),
+                    VKMESH_TINY_DIRECTION);
+}
+
+float corner_angle(float product, float twice_area) {
+  uint largest = max(floatBitsToUint(product) & 0x7fffffffu, floatBitsToUint(twice_area) & 0x7fffffffu);
+  float scale = uintBitsToFloat(0x7f000000u - (largest & 0x7f800000u));
+  precise float scaled_product = product * scale;
+  precise float scaled_area = twice_area * scale;
+  float x = zero_below(scaled_product, VKMESH_TINY_LENGTH);
+  float y = zero_below(scaled_area, VKMESH_TINY_LENGTH);
+  float angle = first_quadrant_angle(y, abs(x));
+  precise float supplement = (2.0 * VKMESH_HALF_PI_HIGH - angle) + 2.0 * VKMESH_HALF_PI_LOW;
+  return x < 0.0 ? supplement : angle;
 }
 
 #endif

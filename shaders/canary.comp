@@ -34,4 +34,10 @@ void main() {
   store_result(i, 13, blend);
   store_result(i, 14, reciprocal(float(i + 1)));
   store_result(i, 15, float(i * 8388617u));
+  store_result(i, 16, arccosine(unit_vector(a).x));
+  store_result(i, 17, exponential(a.y));
+  store_result(i, 18, vector_length(b));
+  const float twice_area = vector_length(area_vector(a, b, c));
+  store_result(i, 19, cotangent(corner_product(a, b, c), twice_area));
+  store_result(i, 20, corner_angle(corner_product(a, b, c), twice_area));
 }

@@ -1,29 +1,27 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One Jacobi step of uniform Laplacian smoothing.
-#include "kernel.glsl"
-
-VKMESH_PUSH_CONSTANTS(LaplacianSmoothingParams);
+// One Jacobi step of Laplacian smoothing with uniform weights.
+#include "smoothing.glsl"
 
 void main() {
   VKMESH_THREAD_INDEX(v);
   const vec3 here = load3(p.source, v);
   const uint begin = p.neighbour_offsets.at[v];
   const uint end = p.neighbour_offsets.at[v + 1];
-  const bool fixed_here = p.use_fixed == 1 && ((p.fixed_bits.at[v / 32] >> (v % 32)) & 1u) != 0u;
+  const bool boundary = bit_of(p.boundary_bits, v);
+  // Along the boundary only the first neighbour and the last count.
+  const bool ends_only = boundary && p.boundary_rule == VKMESH_BOUNDARY_ALONG_ITSELF;
   precise vec3 sum = vec3(0.0);
   for (uint k = 0; k < VKMESH_UNMASKED; ++k) {
     const uint n = begin + k;
     precise vec3 more = sum + load3(p.source, p.neighbour_ids.at[VKMESH_CLAMPED(n, end)]);
-    sum = n < end ? more : sum;
+    sum = n < end && (!ends_only || k == 0u || n + 1 == end) ? more : sum;
   }
-  for (uint n = begin + VKMESH_UNMASKED; n < end; ++n) sum = sum + load3(p.source, p.neighbour_ids.at[n]);
-  precise vec3 mean = sum * reciprocal(float(end - begin));
-  mean = zero_below(mean, VKMESH_TINY_COORDINATE);
-  precise vec3 move = p.lambda * (mean - here);
-  move = zero_below(move, VKMESH_TINY_COORDINATE);
-  precise vec3 there = here + move;
-  there = zero_below(there, VKMESH_TINY_COORDINATE);
+  for (uint n = begin + VKMESH_UNMASKED; n < end; ++n) {
+    precise vec3 more = sum + load3(p.source, p.neighbour_ids.at[n]);
+    sum = !ends_only || n + 1 == end ? more : sum;
+  }
+  const vec3 there = step_towards(here, sum, reciprocal(ends_only ? 2.0 : float(end - begin)));
   VKMESH_SURPLUS_THREADS_LEAVE;
-  store3(p.target, v, begin == end || fixed_here ? here : there);
+  store3(p.target, v, begin == end || stays(v, boundary) ? here : there);
 }

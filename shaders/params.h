@@ -38,24 +38,41 @@ struct TrianglesParams {
 struct VertexNormalsParams {
   VKMESH_UINT first;
   VKMESH_UINT count;
-  VKMESH_FLOATS areas;          ///< 3 a face, from triangle_areas
+  VKMESH_FLOATS areas;          ///< 3 a face, from triangle_areas or triangle_normals
   VKMESH_UINTS corner_offsets;  ///< vertices + 1
   VKMESH_UINTS corner_half_edges;
   VKMESH_FLOATS normals;  ///< 3 a vertex: written
 };
 
-/// laplacian_smoothing.comp: i is a vertex.
+/// vertex_normals_by_angle.comp: i is a vertex.
+struct VertexNormalsByAngleParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;      ///< 3 a vertex
+  VKMESH_UINTS corners;         ///< 3 a face
+  VKMESH_FLOATS face_normals;   ///< 3 a face, from triangle_normals
+  VKMESH_UINTS corner_offsets;  ///< vertices + 1
+  VKMESH_UINTS corner_half_edges;
+  VKMESH_FLOATS normals;  ///< 3 a vertex: written
+};
+
+/// laplacian_smoothing.comp, cotangent_smoothing.comp: i is a vertex.
 struct LaplacianSmoothingParams {
   VKMESH_UINT first;
   VKMESH_UINT count;
   VKMESH_UINTS neighbour_offsets;  ///< vertices + 1
   VKMESH_UINTS neighbour_ids;
-  VKMESH_UINTS fixed_bits;  ///< bit i % 32 of word i / 32: vertex i stays (read when use_fixed is 1)
-  VKMESH_FLOATS source;     ///< 3 a vertex
-  VKMESH_FLOATS target;     ///< 3 a vertex: written
-  VKMESH_FLOAT lambda;
-  VKMESH_UINT use_fixed;
+  VKMESH_UINTS boundary_bits;  ///< bit i % 32 of word i / 32: vertex i lies on the boundary
+  VKMESH_UINTS locked_bits;    ///< likewise: it stays
+  VKMESH_FLOATS source;        ///< 3 a vertex
+  VKMESH_FLOATS target;        ///< 3 a vertex: written
+  VKMESH_FLOAT factor;         ///< λ or μ
+  VKMESH_UINT boundary_rule;
 };
+
+#define VKMESH_BOUNDARY_FREE 0
+#define VKMESH_BOUNDARY_FIXED 1
+#define VKMESH_BOUNDARY_ALONG_ITSELF 2
 
 /// dihedral_angles.comp: i is a half-edge.
 struct DihedralAnglesParams {
@@ -76,6 +93,49 @@ struct VertexMaximaParams {
   VKMESH_FLOATS maxima;  ///< 1 a vertex: written
 };
 
+/// curvatures.comp: i is a vertex.
+struct CurvaturesParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;         ///< 3 a vertex
+  VKMESH_UINTS neighbour_offsets;  ///< vertices + 1
+  VKMESH_UINTS neighbour_ids;
+  VKMESH_UINTS boundary_bits;  ///< bit i % 32 of word i / 32: vertex i lies on the boundary
+  VKMESH_FLOATS curvatures;    ///< 4 a vertex, as VertexCurvature: written
+};
+
+/// bounds_blocks.comp: i is a block of VKMESH_SUM_BLOCK elements.
+struct BoundsBlocksParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS source;  ///< `vectors` times 3 an element: a point (1), or low and high (2)
+  VKMESH_FLOATS target;  ///< 6 a block: written
+  VKMESH_UINT elements;
+  VKMESH_UINT vectors;
+};
+
+/// face_measures.comp: i is a block of VKMESH_SUM_BLOCK faces.
+struct FaceMeasuresParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_FLOATS bounds;     ///< 6
+  VKMESH_FLOATS sums;       ///< 5 a block: written
+  VKMESH_UINT faces;
+  VKMESH_UINT unused;
+};
+
+/// sum_blocks.comp: i is a block of VKMESH_SUM_BLOCK elements.
+struct SumBlocksParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS source;  ///< 5 an element
+  VKMESH_FLOATS target;  ///< 5 a block: written
+  VKMESH_UINT elements;
+  VKMESH_UINT unused;
+};
+
 /// canary.comp: i is a case.
 struct CanaryParams {
   VKMESH_UINT first;
@@ -84,7 +144,7 @@ struct CanaryParams {
   VKMESH_FLOATS results;  ///< VKMESH_CANARY_RESULTS a case: written
 };
 #define VKMESH_CANARY_INPUTS 9
-#define VKMESH_CANARY_RESULTS 16
+#define VKMESH_CANARY_RESULTS 21
 
 #ifdef __cplusplus
 }  // namespace vkmesh::kernels

@@ -20,10 +20,11 @@ constexpr std::uint32_t kCases = 512;
 
 /// What each result of shaders/canary.comp is.
 constexpr std::array<const char*, VKMESH_CANARY_RESULTS> kNames = {
-    "zero_below",           "reciprocal",     "reciprocal_root", "root",
-    "first_quadrant_angle", "squared_length", "area_vector",     "area_vector",
-    "area_vector",          "unit_vector",    "unit_vector",     "unit_vector",
-    "angle_between",        "a + b * c",      "reciprocal",      "float of uint"};
+    "zero_below",     "reciprocal",  "reciprocal_root", "root",          "first_quadrant_angle",
+    "squared_length", "area_vector", "area_vector",     "area_vector",   "unit_vector",
+    "unit_vector",    "unit_vector", "angle_between",   "a + b * c",     "reciprocal",
+    "float of uint",  "arccosine",   "exponential",     "vector_length", "cotangent",
+    "corner_angle"};
 
 /// Values of either sign and of every magnitude in [2^-60, 2^50), some equal, some one bit apart.
 std::vector<float> make_inputs() {
@@ -52,6 +53,7 @@ std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t
   const Vec3 a(in[0], in[1], in[2]), b(in[3], in[4], in[5]), c(in[6], in[7], in[8]);
   const float x = std::fabs(a.x), y = std::fabs(a.y);
   const Vec3 area = area_vector(a, b, c), unit = unit_vector(a);
+  const float twice_area = vector_length(area), product = corner_product(a, b, c);
   return {zero_below(a.x, y),
           reciprocal(x),
           reciprocal_root(x),
@@ -67,7 +69,12 @@ std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t
           angle_between(unit, unit_vector(b)),
           c.x + c.y * (b.x - c.x),
           reciprocal(static_cast<float>(i + 1)),
-          static_cast<float>(i * 8388617u)};
+          static_cast<float>(i * 8388617u),
+          arccosine(unit.x),
+          exponential(a.y),
+          vector_length(b),
+          cotangent(product, twice_area),
+          corner_angle(product, twice_area)};
 }
 
 std::string hexadecimal(float value) {

@@ -9,29 +9,53 @@
 namespace vkmesh {
 namespace {
 
-/// Kernels load one element even of an empty list, and drop it.
+/// Kernels load one element even of an empty list (of faces: its corners), and drop it.
 constexpr std::uint64_t kOneElement = 1;
+
+bool needs_neighbours(const MeshPasses& passes) {
+  return passes.laplacian_smoothing || passes.curvatures;
+}
 
 /// Bytes of each buffer of a DeviceMesh; 0 for those that no pass asks for.
 struct Sizes {
   std::uint64_t positions = 0, smoothed_positions = 0, corners = 0, twins = 0, neighbour_offsets = 0,
-                neighbour_ids = 0, boundary_bits = 0, corner_offsets = 0, corner_half_edges = 0,
-                face_vectors = 0, vertex_normals = 0, half_edge_angles = 0, vertex_maxima = 0;
+                neighbour_ids = 0, boundary_bits = 0, locked_bits = 0, corner_offsets = 0,
+                corner_half_edges = 0, face_vectors = 0, triangle_normals = 0, vertex_normals = 0,
+                half_edge_angles = 0, vertex_maxima = 0, curvatures = 0, surface_measures = 0, block_sums = 0,
+                more_block_sums = 0;
 
   Sizes(const HalfEdgeMesh& mesh, const MeshPasses& passes, std::uint64_t directed_edges) {
     const std::uint64_t vertices = mesh.vertex_count(), half_edges = mesh.half_edge_count();
     positions = 12 * vertices;
     if (passes.laplacian_smoothing) {
       smoothed_positions = positions;
+      locked_bits = 4 * ((vertices + 31) / 32);
+    }
+    if (passes.curvatures) curvatures = 16 * vertices;
+    if (needs_neighbours(passes)) {
       neighbour_offsets = 4 * (vertices + 1);
       neighbour_ids = 4 * std::max(directed_edges, kOneElement);
       boundary_bits = 4 * ((vertices + 31) / 32);
     }
+    const std::uint64_t face_bytes = 12 * std::max<std::uint64_t>(mesh.face_count(), kOneElement);
+    if (passes.surface_measures) {
+      corners = 4 * std::max(half_edges, 3 * kOneElement);
+      surface_measures = sizeof(RawMeasures);
+      // The larger of bounds and sums; the next level takes a 64th.
+      const std::uint64_t blocks =
+          std::max<std::uint64_t>(vertices, mesh.face_count()) / VKMESH_SUM_BLOCK + kOneElement;
+      block_sums = 24 * blocks;
+      more_block_sums = 24 * (blocks / VKMESH_SUM_BLOCK + kOneElement);
+    }
+    if (passes.triangle_normals) {
+      corners = 4 * std::max(half_edges, 3 * kOneElement);
+      triangle_normals = face_bytes;
+    }
     if (passes.vertex_normals || passes.dihedral_angles) {
-      corners = 4 * half_edges;
+      corners = 4 * std::max(half_edges, 3 * kOneElement);
       corner_offsets = 4 * (vertices + 1);
       corner_half_edges = 4 * std::max(half_edges, kOneElement);
-      face_vectors = 12 * std::max<std::uint64_t>(mesh.face_count(), kOneElement);
+      face_vectors = face_bytes;
     }
     if (passes.vertex_normals) vertex_normals = positions;
     if (passes.dihedral_angles) {
@@ -43,8 +67,9 @@ struct Sizes {
 
   [[nodiscard]] std::uint64_t total() const {
     return positions + smoothed_positions + corners + twins + neighbour_offsets + neighbour_ids +
-           boundary_bits + corner_offsets + corner_half_edges + face_vectors + vertex_normals +
-           half_edge_angles + vertex_maxima;
+           boundary_bits + locked_bits + corner_offsets + corner_half_edges + face_vectors +
+           triangle_normals + vertex_normals + half_edge_angles + vertex_maxima + curvatures +
+           surface_measures + block_sums + more_block_sums;
   }
 };
 
@@ -58,7 +83,8 @@ Result<void> fill(Context& context, Buffer& buffer, std::uint64_t bytes, const c
                   std::span<const std::uint32_t> values) {
   if (bytes == 0) return {};
   VKMESH_CHECK(make(context, buffer, bytes, name));
-  return values.empty() ? buffer.upload_values<std::uint32_t>({{0u}}) : buffer.upload_values(values);
+  if (!values.empty()) return buffer.upload_values(values);
+  return buffer.upload_values<std::uint32_t>(std::vector<std::uint32_t>(bytes / 4, 0u));
 }
 
 template <class T>
@@ -76,7 +102,7 @@ Result<std::vector<T>> values_of(const Buffer& buffer, std::size_t count, bool m
 std::uint64_t DeviceMesh::estimate_memory(const HalfEdgeMesh& mesh, const MeshPasses& passes) {
   // Each boundary half-edge stands for two directed edges.
   const std::uint64_t directed =
-      passes.laplacian_smoothing ? mesh.half_edge_count() + mesh.boundary_half_edge_count() : 0;
+      needs_neighbours(passes) ? mesh.half_edge_count() + mesh.boundary_half_edge_count() : 0;
   return Sizes(mesh, passes, directed).total();
 }
 
@@ -91,7 +117,7 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
     result.passes_ = passes;
 
     NodeNeighbours neighbours;
-    if (passes.laplacian_smoothing) {
+    if (needs_neighbours(passes)) {
       VKMESH_TRY(neighbours, node_neighbours(mesh));
     }
     VertexCorners corners;
@@ -109,14 +135,20 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
     VKMESH_CHECK(fill(context, result.neighbour_ids_, bytes.neighbour_ids, "neighbour ids", neighbours.ids));
     VKMESH_CHECK(
         fill(context, result.boundary_bits_, bytes.boundary_bits, "boundary bits", neighbours.boundary_bits));
+    VKMESH_CHECK(fill(context, result.locked_bits_, bytes.locked_bits, "locked bits", {}));
     VKMESH_CHECK(
         fill(context, result.corner_offsets_, bytes.corner_offsets, "corner offsets", corners.offsets));
     VKMESH_CHECK(fill(context, result.corner_half_edges_, bytes.corner_half_edges, "corner half-edges",
                       corners.half_edges));
     VKMESH_CHECK(make(context, result.face_vectors_, bytes.face_vectors, "face vectors"));
+    VKMESH_CHECK(make(context, result.triangle_normals_, bytes.triangle_normals, "triangle normals"));
     VKMESH_CHECK(make(context, result.vertex_normals_, bytes.vertex_normals, "vertex normals"));
     VKMESH_CHECK(make(context, result.half_edge_angles_, bytes.half_edge_angles, "half-edge angles"));
     VKMESH_CHECK(make(context, result.vertex_maxima_, bytes.vertex_maxima, "vertex maxima"));
+    VKMESH_CHECK(make(context, result.curvatures_, bytes.curvatures, "curvatures"));
+    VKMESH_CHECK(make(context, result.surface_measures_, bytes.surface_measures, "surface measures"));
+    VKMESH_CHECK(make(context, result.block_sums_, bytes.block_sums, "block sums"));
+    VKMESH_CHECK(make(context, result.more_block_sums_, bytes.more_block_sums, "more block sums"));
     return result;
   });
 }
@@ -133,6 +165,15 @@ Result<void> DeviceMesh::upload_positions(std::span<const Vec3> positions) {
   });
 }
 
+Result<void> DeviceMesh::upload_locks(std::span<const std::uint32_t> locked) {
+  if (!passes_.laplacian_smoothing)
+    return fail(ErrorCode::kUsage, "the mesh was not made for the pass laplacian_smoothing");
+  if (locked.size_bytes() != locked_bits_.size())
+    return fail(ErrorCode::kUsage, std::to_string(locked.size()) + " words of locked vertices, not " +
+                                       std::to_string(locked_bits_.size() / 4));
+  return locked_bits_.upload_values(locked);
+}
+
 Result<std::vector<Vec3>> DeviceMesh::download_positions() const {
   return values_of<Vec3>(positions_, vertices_, true, "");
 }
@@ -141,8 +182,22 @@ Result<std::vector<Vec3>> DeviceMesh::download_vertex_normals() const {
   return values_of<Vec3>(vertex_normals_, vertices_, passes_.vertex_normals, "vertex_normals");
 }
 
+Result<std::vector<Vec3>> DeviceMesh::download_triangle_normals() const {
+  return values_of<Vec3>(triangle_normals_, faces_, passes_.triangle_normals, "triangle_normals");
+}
+
 Result<std::vector<float>> DeviceMesh::download_half_edge_angles() const {
   return values_of<float>(half_edge_angles_, half_edge_count(), passes_.dihedral_angles, "dihedral_angles");
+}
+
+Result<std::vector<VertexCurvature>> DeviceMesh::download_curvatures() const {
+  return values_of<VertexCurvature>(curvatures_, vertices_, passes_.curvatures, "curvatures");
+}
+
+Result<SurfaceMeasures> DeviceMesh::download_surface_measures() const {
+  VKMESH_TRY(const std::vector<RawMeasures> raw,
+             values_of<RawMeasures>(surface_measures_, 1, passes_.surface_measures, "surface_measures"));
+  return to_surface_measures(raw[0]);
 }
 
 Result<std::vector<float>> DeviceMesh::download_vertex_maxima() const {

@@ -1,22 +1,17 @@
 #include <vkmesh/engine/dihedral_angles.h>
 
-#include "shaders.h"
+#include "face_vectors.h"
 
 namespace vkmesh {
 
 Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh) {
   if (!mesh.passes().dihedral_angles)
     return fail(ErrorCode::kUsage, "the mesh was not made for the pass dihedral_angles");
-  VKMESH_TRY(const Kernel* normals, Kernel::get(recorder.context(), detail::triangle_normals_kernel()));
   VKMESH_TRY(const Kernel* angles, Kernel::get(recorder.context(), detail::dihedral_angles_kernel()));
   VKMESH_TRY(const Kernel* maxima, Kernel::get(recorder.context(), detail::vertex_maxima_kernel()));
 
-  kernels::TrianglesParams of_faces{};
-  of_faces.positions = mesh.positions().address();
-  of_faces.corners = mesh.corners().address();
-  of_faces.vectors = mesh.face_vectors().address();
-  VKMESH_CHECK(recorder.dispatch(*normals, of_faces, mesh.face_count(), {&mesh.positions(), &mesh.corners()},
-                                 {&mesh.face_vectors()}));
+  VKMESH_CHECK(
+      detail::record_face_vectors(recorder, mesh, detail::triangle_normals_kernel(), mesh.face_vectors()));
 
   kernels::DihedralAnglesParams of_half_edges{};
   of_half_edges.normals = mesh.face_vectors().address();

@@ -3,6 +3,7 @@
 
 #include <vkmesh/engine/laplacian_smoothing.h>
 
+#include "passes/smoothing_input.h"
 #include "shaders.h"
 
 namespace vkmesh {
@@ -11,26 +12,36 @@ Result<void> record_laplacian_smoothing(Recorder& recorder, DeviceMesh& mesh,
                                         const LaplacianSmoothingOptions& options) {
   if (!mesh.passes().laplacian_smoothing)
     return fail(ErrorCode::kUsage, "the mesh was not made for the pass laplacian_smoothing");
-  if (!(options.lambda >= 0.0f && options.lambda <= 1.0f))
-    return fail(ErrorCode::kUsage, "lambda must lie in [0, 1], not " + std::to_string(options.lambda));
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), detail::laplacian_smoothing_kernel()));
+  VKMESH_CHECK(detail::require_smoothing_options(options));
+  if (!options.locked.empty())
+    return fail(ErrorCode::kUsage, "a device takes locked vertices by DeviceMesh::upload_locks()");
+  const bool uniform = options.weights == SmoothingWeights::kUniform;
+  VKMESH_TRY(const Kernel* kernel,
+             Kernel::get(recorder.context(), uniform ? detail::laplacian_smoothing_kernel()
+                                                     : detail::cotangent_smoothing_kernel()));
 
   kernels::LaplacianSmoothingParams params{};
   params.neighbour_offsets = mesh.neighbour_offsets().address();
   params.neighbour_ids = mesh.neighbour_ids().address();
-  params.fixed_bits = mesh.boundary_bits().address();
-  params.lambda = options.lambda;
-  params.use_fixed = options.fix_boundary ? 1 : 0;
+  params.boundary_bits = mesh.boundary_bits().address();
+  params.locked_bits = mesh.locked_bits().address();
+  params.boundary_rule = options.fix_boundary            ? VKMESH_BOUNDARY_FIXED
+                         : options.boundary_along_itself ? VKMESH_BOUNDARY_ALONG_ITSELF
+                                                         : VKMESH_BOUNDARY_FREE;
   const Buffer* source = &mesh.positions();
   const Buffer* target = &mesh.smoothed_positions();
-  for (std::uint32_t step = 0; step < options.iterations; ++step) {
+  const auto step = [&](std::uint32_t, float factor) -> Result<void> {
+    params.factor = factor;
     params.source = source->address();
     params.target = target->address();
-    VKMESH_CHECK(recorder.dispatch(
-        *kernel, params, mesh.vertex_count(),
-        {source, &mesh.neighbour_offsets(), &mesh.neighbour_ids(), &mesh.boundary_bits()}, {target}));
+    VKMESH_CHECK(recorder.dispatch(*kernel, params, mesh.vertex_count(),
+                                   {source, &mesh.neighbour_offsets(), &mesh.neighbour_ids(),
+                                    &mesh.boundary_bits(), &mesh.locked_bits()},
+                                   {target}));
     std::swap(source, target);
-  }
+    return {};
+  };
+  VKMESH_CHECK(detail::for_each_smoothing_step(options, step));
   if (source == &mesh.positions()) return {};
   return recorder.copy(*source, mesh.positions(), source->size());
 }

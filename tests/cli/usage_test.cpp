@@ -12,20 +12,26 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::vector<std::string> kCommands = {"info",   "convert",  "normals", "curvature",
-                                            "smooth", "simplify", "devices"};
+const std::vector<std::string> kCommands = {"info",     "convert", "normals", "curvature", "smooth",
+                                            "simplify", "compare", "digest",  "devices"};
 
-/// The words of the line after "Example:", the program's name aside.
-std::vector<std::string> example_of(const std::string& help) {
-  const std::size_t at = help.find("Example:\n");
+/// The words of each line after "Example:" or "Examples:", the program's name aside.
+std::vector<std::vector<std::string>> examples_of(const std::string& help) {
+  const std::size_t at = help.find("\nExample");
   REQUIRE(at != std::string::npos);
-  std::istringstream words(help.substr(at + 9, help.find('\n', at + 9) - at - 9));
-  std::vector<std::string> arguments;
-  for (std::string word; words >> word;) arguments.push_back(word);
-  REQUIRE(!arguments.empty());
-  REQUIRE(arguments.front() == "vkmesh");
-  arguments.erase(arguments.begin());
-  return arguments;
+  std::istringstream lines(help.substr(help.find('\n', at + 1) + 1));
+  std::vector<std::vector<std::string>> examples;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::vector<std::string> arguments;
+    for (std::string word; words >> word;) arguments.push_back(word);
+    if (arguments.empty()) continue;
+    REQUIRE(arguments.front() == "vkmesh");
+    arguments.erase(arguments.begin());
+    examples.push_back(arguments);
+  }
+  REQUIRE(!examples.empty());
+  return examples;
 }
 
 }  // namespace
@@ -48,16 +54,19 @@ TEST_CASE("The example in the help of every subcommand runs") {
     CAPTURE(command);
     const Outcome help = vkmesh_run({command, "--help"});
     REQUIRE(help.code == 0);
-    const auto arguments = example_of(help.out);
-    CHECK(arguments.front() == command);
-    const Scratch scratch;
-    std::filesystem::create_symlink(VKMESH_DATA_DIR, scratch.path("data"));
-    RunOptions options;
-    options.folder = scratch.path("");
-    const Outcome outcome = vkmesh_run(arguments, options);
-    CAPTURE(outcome.err);
-    CHECK(outcome.code == 0);
-    CHECK(scratch.names().size() == (command == "info" || command == "devices" ? 1 : 2));
+    for (const std::vector<std::string>& arguments : examples_of(help.out)) {
+      CHECK(arguments.front() == command);
+      const Scratch scratch;
+      std::filesystem::create_symlink(VKMESH_DATA_DIR, scratch.path("data"));
+      RunOptions options;
+      options.folder = scratch.path("");
+      const Outcome outcome = vkmesh_run(arguments, options);
+      CAPTURE(outcome.err);
+      CHECK(outcome.code == 0);
+      const bool writes =
+          command != "info" && command != "compare" && command != "digest" && command != "devices";
+      CHECK(scratch.names().size() == (writes ? 2 : 1));
+    }
   }
 }
 

@@ -7,14 +7,18 @@
 #include <catch2/catch.hpp>
 
 #include <vkmesh/consolidate.h>
+#include <vkmesh/engine/curvatures.h>
 #include <vkmesh/engine/device_mesh.h>
 #include <vkmesh/engine/dihedral_angles.h>
 #include <vkmesh/engine/laplacian_smoothing.h>
 #include <vkmesh/engine/recorder.h>
+#include <vkmesh/engine/surface_measures.h>
+#include <vkmesh/engine/triangle_normals.h>
 #include <vkmesh/engine/vertex_normals.h>
 #include <vkmesh/io/mesh_io.h>
 #include <vkmesh/passes/dihedral_angles.h>
 #include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/triangle_normals.h>
 #include <vkmesh/passes/vertex_normals.h>
 
 #include "support/data.h"
@@ -25,8 +29,12 @@ using namespace vkmesh;
 
 namespace {
 
-constexpr MeshPasses kAllPasses = {
-    .vertex_normals = true, .laplacian_smoothing = true, .dihedral_angles = true};
+constexpr MeshPasses kAllPasses = {.vertex_normals = true,
+                                   .laplacian_smoothing = true,
+                                   .dihedral_angles = true,
+                                   .triangle_normals = true,
+                                   .curvatures = true,
+                                   .surface_measures = true};
 
 // The number of places where two arrays differ in any bit, plus the difference in their lengths.
 std::size_t differences(std::span<const float> a, std::span<const float> b) {
@@ -51,21 +59,77 @@ T require(Result<T> result) {
   return *std::move(result);
 }
 
+// Runs `record` on a fresh device mesh.
+template <class Record>
+DeviceMesh run(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, Record&& record) {
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, positions, kAllPasses));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  require_done(record(recorder, device));
+  require_done(recorder.submit_and_wait());
+  return device;
+}
+
 // Runs all passes on both sides and compares every output.
 void check_exact(const IndexedFaceSet& set) {
   const HalfEdgeMesh mesh = test::half_edges(set);
   Context& context = test::test_context();
+  for (const NormalWeights weights : {NormalWeights::kAngle, NormalWeights::kUniform}) {
+    const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
+      return record_vertex_normals(recorder, on_device, {.weights = weights});
+    });
+    CHECK(differences(require(device.download_vertex_normals()),
+                      require(vertex_normals(mesh, set.points, {.weights = weights}))) == 0);
+  }
+  const NodeNeighbours neighbours = require(node_neighbours(mesh));
+  const auto bent = require(run(mesh, set.points, record_curvatures).download_curvatures());
+  const auto expected = require(curvatures(neighbours, set.points));
+  CHECK(differences(std::span(bent.empty() ? nullptr : &bent[0].mean, 4 * bent.size()),
+                    std::span(expected.empty() ? nullptr : &expected[0].mean, 4 * expected.size())) == 0);
+  const SurfaceMeasures measured =
+      require(run(mesh, set.points, record_surface_measures).download_surface_measures());
+  const SurfaceMeasures wanted = require(surface_measures(mesh, set.points));
+  CHECK(measured.area == wanted.area);
+  CHECK(measured.volume == wanted.volume);
+  CHECK(measured.centroid == wanted.centroid);
+  CHECK(differences(std::vector{measured.low, measured.high}, std::vector{wanted.low, wanted.high}) == 0);
+  std::vector<std::uint32_t> locks(neighbours.boundary_bits.size());
+  std::mt19937 random(23);
+  for (std::uint32_t& word : locks) word = static_cast<std::uint32_t>(random() & random());
+  for (const LaplacianSmoothingOptions& options :
+       {LaplacianSmoothingOptions{.lambda = 0.63f, .iterations = 3, .fix_boundary = false, .mu = -0.67f},
+        LaplacianSmoothingOptions{.iterations = 3, .fix_boundary = false, .boundary_along_itself = true},
+        LaplacianSmoothingOptions{
+            .lambda = 0.9f, .iterations = 4, .weights = SmoothingWeights::kCotangent, .mu = -0.95f},
+        LaplacianSmoothingOptions{
+            .iterations = 3, .fix_boundary = false, .weights = SmoothingWeights::kCotangent},
+        LaplacianSmoothingOptions{.iterations = 3,
+        .fix_boundary = false,
+        .boundary_along_itself = true,
+        .weights = SmoothingWeights::kCotangent}})
+    for (const bool locked : {false, true}) {
+      const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
+        if (locked) require_done(on_device.upload_locks(locks));
+        return record_laplacian_smoothing(recorder, on_device, options);
+      });
+      LaplacianSmoothingOptions on_host = options;
+      if (locked) on_host.locked = locks;
+      CHECK(differences(require(device.download_positions()),
+                        require(laplacian_smoothing(neighbours, set.points, on_host))) == 0);
+    }
   for (const LaplacianSmoothingOptions& options :
        {LaplacianSmoothingOptions{.lambda = 0.5f, .iterations = 1, .fix_boundary = true},
         LaplacianSmoothingOptions{.lambda = 0.37f, .iterations = 10, .fix_boundary = false}}) {
     DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points, kAllPasses));
     Recorder recorder = require(Recorder::create(context));
+    require_done(record_triangle_normals(recorder, device));
     require_done(record_vertex_normals(recorder, device));
     require_done(record_dihedral_angles(recorder, device));
     require_done(record_laplacian_smoothing(recorder, device, options));
     require_done(recorder.submit_and_wait());
 
     const DihedralAngles angles = require(dihedral_angles(mesh, set.points));
+    CHECK(differences(require(device.download_triangle_normals()),
+                      require(triangle_normals(mesh, set.points))) == 0);
     CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, set.points))) ==
           0);
     CHECK(differences(require(device.download_half_edge_angles()), angles.half_edge) == 0);
@@ -145,7 +209,17 @@ TEST_CASE("smoothing on the device: λ out of range and passes that the mesh was
   Recorder recorder = require(Recorder::create(test::test_context()));
   CHECK(record_laplacian_smoothing(recorder, device, {}).error().code == ErrorCode::kUsage);
   CHECK(record_dihedral_angles(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_curvatures(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_surface_measures(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_triangle_normals(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(device.download_triangle_normals().error().code == ErrorCode::kUsage);
   DeviceMesh all =
       require(DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, kAllPasses));
   CHECK(record_laplacian_smoothing(recorder, all, {.lambda = 1.5f}).error().code == ErrorCode::kUsage);
+  CHECK(record_laplacian_smoothing(recorder, all, {.mu = 0.5f}).error().code == ErrorCode::kUsage);
+  const std::vector<std::uint32_t> locks(1, 0u), too_many(2, 0u);
+  CHECK(record_laplacian_smoothing(recorder, all, {.locked = locks}).error().code == ErrorCode::kUsage);
+  CHECK(all.upload_locks(too_many).error().code == ErrorCode::kUsage);
+  CHECK(device.upload_locks(locks).error().code == ErrorCode::kUsage);
+  CHECK(all.upload_locks(locks));
 }

@@ -71,7 +71,7 @@ std::vector<std::uint32_t> copy_of(std::span<const std::uint32_t> module) {
 }  // namespace
 
 TEST_CASE("shaders keep the rules of exact arithmetic", "[no-device]") {
-  CHECK(detail::embedded_kernels().size() >= 7);
+  CHECK(detail::embedded_kernels().size() >= 13);
   for (const KernelSource& source : detail::embedded_kernels())
     for (const std::string& breach : breaches(source.spirv)) FAIL_CHECK(source.name << ": " << breach);
 }

@@ -27,7 +27,87 @@ void sweep(float low, float high, std::uint32_t stride, F&& f) {
     f(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
 }
 
+// The largest errors over the floats whose bits are multiples of `stride`, the whole range of each function.
+struct WorstErrors {
+  double arccosine = 0, exponential = 0;
+  std::size_t undefined = 0;  // Results outside of what is promised.
+};
+
+WorstErrors worst_errors(std::uint32_t stride) {
+  WorstErrors worst;
+  const long double smallest = std::numeric_limits<float>::min(), largest = std::numeric_limits<float>::max();
+  for (std::uint64_t bits = 0; bits <= 0xffffffffu; bits += stride) {
+    const float x = std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+    const float angle = arccosine(x), power = exponential(x);
+    worst.undefined += !(angle >= 0.0f && angle <= 3.1415927f && power >= 0.0f && power <= largest);
+    if (std::isnan(x)) continue;
+    const long double held = std::clamp(static_cast<long double>(x), -1.0L, 1.0L);
+    worst.arccosine = std::max(worst.arccosine, ulps(angle, std::acos(held)));
+    // Past the range of floats the ends of the range are the answers.
+    const long double exact = std::exp(static_cast<long double>(x));
+    if (exact < smallest * (1 - 0x1p-24L))
+      worst.undefined += power != 0.0f;
+    else if (exact > largest)
+      worst.undefined += power != std::numeric_limits<float>::max();
+    else
+      worst.exponential = std::max(worst.exponential, ulps(power, exact));
+  }
+  return worst;
+}
+
+void check_errors(const WorstErrors& worst) {
+  INFO("arccosine " << worst.arccosine << " ULP, exponential " << worst.exponential << " ULP");
+  CHECK(worst.arccosine <= 1.5);
+  CHECK(worst.exponential <= 1.0);
+  CHECK(worst.undefined == 0);
+}
+
 }  // namespace
+
+TEST_CASE("arccosine within 1.5 ULP, exponential within 1 ULP, over their whole range") {
+  check_errors(worst_errors(4093));
+}
+
+TEST_CASE("arccosine and exponential on every float", "[.long]") {
+  check_errors(worst_errors(1));
+}
+
+TEST_CASE("reciprocal and the roots on every normal float", "[.long]") {
+  double worst_reciprocal = 0, worst_reciprocal_root = 0;
+  std::size_t wrong = 0;
+  sweep(0x1p-126f, std::numeric_limits<float>::max(), 1, [&](float x) {
+    const long double exact = std::sqrt(static_cast<long double>(x));
+    // Where 1 / x is subnormal the answer is 0.
+    if (x <= 0x1p126f)
+      worst_reciprocal = std::max(worst_reciprocal, ulps(reciprocal(x), 1.0L / x));
+    else
+      wrong += reciprocal(x) != 0.0f;
+    worst_reciprocal_root = std::max(worst_reciprocal_root, ulps(reciprocal_root(x), 1.0L / exact));
+    wrong += root(x) != static_cast<float>(exact);
+  });
+  INFO("reciprocal " << worst_reciprocal << " ULP, reciprocal root " << worst_reciprocal_root << " ULP");
+  CHECK(worst_reciprocal <= 0.5001);
+  CHECK(worst_reciprocal_root <= 0.5001);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("arccosine and exponential at their ends") {
+  const float infinity = std::numeric_limits<float>::infinity(),
+              nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float x : {1.0f, 1.5f, infinity, nan}) {
+    CHECK(arccosine(x) == 0.0f);
+    CHECK(arccosine(-x) == 3.14159265f);
+  }
+  CHECK(exponential(-infinity) == 0.0f);
+  CHECK(exponential(-nan) == 0.0f);
+  CHECK(arccosine(0.0f) == 1.57079633f);
+  CHECK(arccosine(-0x1p-149f) == 1.57079633f);
+  CHECK(exponential(0.0f) == 1.0f);
+  CHECK(exponential(0x1p-149f) == 1.0f);
+  CHECK(exponential(infinity) == std::numeric_limits<float>::max());
+  CHECK(exponential(nan) == std::numeric_limits<float>::max());
+  CHECK(exponential(-87.4f) == 0.0f);
+}
 
 TEST_CASE(
     "reciprocal and reciprocal root within 0.5001 ULP, root correctly rounded: every mantissa, every "
@@ -130,6 +210,56 @@ TEST_CASE("the angle between unit vectors is accurate from flat to folded") {
   CHECK(angle_between(Vec3(0, 0, 1), Vec3(0, 0, 1)) == 0.0f);
   CHECK(angle_between(Vec3(0, 0, 1), Vec3(0, 0, -1)) == 3.14159265f);
   CHECK(angle_between(Vec3(0.0f), Vec3(0, 0, 1)) == 0.0f);
+}
+
+TEST_CASE("length, cotangent and angle of a corner, from tiny to huge") {
+  std::mt19937 random(5);
+  double worst_length = 0, worst_cotangent = 0, worst_angle = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const auto component = [&] { return static_cast<float>(random() >> 8) / 8388608.0f - 1.0f; };
+    const float unit = std::ldexp(1.0f, static_cast<int>(random() % 80u) - 40);
+    const Vec3 p0(0.0f), p1 = Vec3(component(), component(), component()) * unit,
+                         p2 = Vec3(component(), component(), component()) * unit;
+    const DVec3 a(p1), b(p2);
+    const DVec3 c(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    const double dot = a.x * b.x + a.y * b.y + a.z * b.z, area = std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z),
+                 sizes = std::sqrt((a.x * a.x + a.y * a.y + a.z * a.z) * (b.x * b.x + b.y * b.y + b.z * b.z));
+    const float twice_area = vector_length(area_vector(p0, p1, p2)), product = corner_product(p0, p1, p2);
+    worst_length = std::max(
+        worst_length,
+        ulps(vector_length(p1), std::sqrt(static_cast<long double>(a.x * a.x + a.y * a.y + a.z * a.z))));
+    // Both products carry roundings of |a||b|, which move the angle by as much.
+    worst_angle = std::max(worst_angle, std::fabs(corner_angle(product, twice_area) - std::atan2(area, dot)));
+    if (area > 0.01 * sizes)
+      worst_cotangent = std::max(worst_cotangent, std::fabs(cotangent(product, twice_area) - dot / area) *
+                                                      std::pow(area / sizes, 2));
+  }
+  INFO("length " << worst_length << " ULP, angle " << worst_angle / 0x1p-23 << ", cotangent "
+                 << worst_cotangent / 0x1p-23);
+  CHECK(worst_length <= 4.0);
+  CHECK(worst_angle <= 8 * 0x1p-23);
+  CHECK(worst_cotangent <= 8 * 0x1p-23);
+}
+
+TEST_CASE("cotangents are bounded, and corners without area have angles 0 or π") {
+  const Vec3 o(0.0f), x(1, 0, 0);
+  const auto cotangent_at = [](Vec3 p0, Vec3 p1, Vec3 p2) {
+    return cotangent(corner_product(p0, p1, p2), vector_length(area_vector(p0, p1, p2)));
+  };
+  const auto angle_at = [](Vec3 p0, Vec3 p1, Vec3 p2) {
+    return corner_angle(corner_product(p0, p1, p2), vector_length(area_vector(p0, p1, p2)));
+  };
+  CHECK(cotangent_at(o, x, Vec3(0, 2, 0)) == 0.0f);
+  CHECK(cotangent_at(o, x, Vec3(1, 1, 0)) == 1.0f);
+  CHECK(cotangent_at(o, x, Vec3(-1, 1, 0)) == -1.0f);
+  CHECK(cotangent_at(o, 0x1p59f * x, Vec3(0x1p59f, 0x1p-60f, 0)) == 1024.0f);
+  CHECK(cotangent_at(o, 0x1p59f * x, Vec3(-0x1p59f, 0x1p-60f, 0)) == -1024.0f);
+  CHECK(cotangent_at(o, x, 2.0f * x) == 0.0f);
+  CHECK(cotangent_at(o, o, o) == 0.0f);
+  CHECK(angle_at(o, x, 2.0f * x) == 0.0f);
+  CHECK(angle_at(o, x, -2.0f * x) == 3.14159265f);
+  CHECK(angle_at(o, x, Vec3(0, 0x1p-59f, 0)) == 1.57079633f);
+  CHECK(angle_at(o, o, x) == 0.0f);
 }
 
 TEST_CASE("no step of the geometry makes a subnormal: tiny values count as zero") {

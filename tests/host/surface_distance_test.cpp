@@ -197,4 +197,71 @@ TEST_CASE("surface distance can be cancelled at any report", "[distance]") {
   }
 }
 
+TEST_CASE("the Hausdorff distance lies between its bounds, and these as near as was asked", "[distance]") {
+  // Few samples, so that they miss the farthest point: the bounds must not.
+  SurfaceDistanceOptions options;
+  options.samples = 10;
+  for (const double tolerance : {0.5, 0.05, 0.001}) {
+    CAPTURE(tolerance);
+    options.hausdorff_tolerance = tolerance;
+    const auto check = [&](const IndexedFaceSet& a, const IndexedFaceSet& b, double there, double back) {
+      const SurfaceDistance d = surface_distance(surface(a), surface(b), options).value();
+      const double slack = 1e-6 * (there + back);  // The coordinates are floats.
+      CHECK(d.a_to_b.hausdorff_low <= there + slack);
+      CHECK(d.a_to_b.hausdorff_high >= there - slack);
+      CHECK(d.a_to_b.hausdorff_high <= d.a_to_b.hausdorff_low * (1 + tolerance) * (1 + 1e-12));
+      CHECK(d.b_to_a.hausdorff_low <= back + slack);
+      CHECK(d.b_to_a.hausdorff_high >= back - slack);
+      CHECK(d.two_sided().hausdorff_high == std::max(d.a_to_b.hausdorff_high, d.b_to_a.hausdorff_high));
+    };
+    // A grid, one inner vertex pulled up by 1/2: from it straight down. Back it is at least the distance of
+    // the point below that vertex.
+    IndexedFaceSet flat = test::grid(6, 6), peak = flat;
+    peak.points[7 * 3 + 3].z = 0.5f;
+    DVec3 below(peak.points[7 * 3 + 3]);
+    below.z = 0;
+    double back = std::numeric_limits<double>::infinity();
+    for (std::size_t f = 0; f < peak.face_count(); ++f) {
+      const auto c = peak.face(f);
+      back = std::min(back, brute_force(below, DVec3(peak.points[c[0]]), DVec3(peak.points[c[1]]),
+                                        DVec3(peak.points[c[2]])));
+    }
+    const SurfaceDistance d = surface_distance(surface(peak), surface(flat), options).value();
+    CHECK(d.b_to_a.hausdorff_high >= back * (1 - 1e-6));
+    check(peak, flat, 0.5, d.b_to_a.hausdorff_low);
+    // One sphere inside another: the vertices of the outer one over the faces of the inner.
+    const SurfaceDistance spheres =
+        surface_distance(surface(icosphere(2, 2.0f)), surface(icosphere(2)), options).value();
+    CHECK(spheres.a_to_b.hausdorff_low <= 1.0 + 1e-6);
+    CHECK(spheres.a_to_b.hausdorff_high >= 1.0 - 1e-6);
+    CHECK(spheres.a_to_b.hausdorff_high <= (1 + tolerance) * (1 + 1e-6));
+  }
+  options.hausdorff_tolerance = 0;
+  CHECK(surface_distance(surface(icosphere(1)), surface(icosphere(2)), options)->a_to_b.hausdorff_high == 0);
+  options.hausdorff_tolerance = -1;
+  CHECK(surface_distance(surface(icosphere(1)), surface(icosphere(2)), options).error().code ==
+        ErrorCode::kUsage);
+}
+
+TEST_CASE("a surface and itself have a Hausdorff distance of nothing", "[distance]") {
+  SurfaceDistanceOptions options;
+  options.hausdorff_tolerance = 0.01;
+  const SurfaceDistance d = surface_distance(surface(icosphere(3)), surface(icosphere(3)), options).value();
+  CHECK(d.two_sided().hausdorff_high < 1e-9);  // Rounding alone.
+}
+
+TEST_CASE("normals differ by the angle between the surfaces", "[distance]") {
+  const IndexedFaceSet flat = test::grid(4, 4);
+  IndexedFaceSet tilted = flat;
+  for (Vec3& p : tilted.points) p = {p.x, p.y * 0.8f, p.y * 0.6f};
+  const SurfaceDistance d = distance(flat, tilted);
+  CHECK(d.a_to_b.mean_normal_angle == Approx(std::atan2(0.6, 0.8)));
+  CHECK(d.b_to_a.maximum_normal_angle == Approx(std::atan2(0.6, 0.8)));
+  IndexedFaceSet turned = flat;
+  for (std::size_t c = 0; c < turned.corners.size(); c += 3)
+    std::swap(turned.corners[c], turned.corners[c + 1]);
+  CHECK(distance(flat, turned).two_sided().mean_normal_angle == Approx(3.14159265358979));
+  CHECK(distance(flat, flat).two_sided().maximum_normal_angle == 0);
+}
+
 }  // namespace vkmesh

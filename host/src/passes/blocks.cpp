@@ -4,14 +4,7 @@
 
 #include <vkmesh/passes/arithmetic.h>
 
-// Compiled once for each instruction set, chosen when the program starts. The bytes do not change: none of
-// these sets brings fused multiply-add, and lanes do not mix. Sanitizers run before the choice can be made.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define VKMESH_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define VKMESH_CLONES
-#endif
+#include "passes/clones.h"
 
 namespace vkmesh::detail {
 

@@ -10,6 +10,8 @@
 #include <vkmesh/engine/context.h>
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/node_neighbours.h>
+#include <vkmesh/passes/curvatures.h>
+#include <vkmesh/passes/surface_measures.h>
 #include <vkmesh/result.h>
 #include <vkmesh/vec.h>
 
@@ -20,6 +22,9 @@ struct MeshPasses {
   bool vertex_normals = false;
   bool laplacian_smoothing = false;
   bool dihedral_angles = false;
+  bool triangle_normals = false;
+  bool curvatures = false;
+  bool surface_measures = false;
 };
 
 /// The arrays of a HalfEdgeMesh and the views that the passes gather over, uploaded. Connectivity does not
@@ -43,11 +48,19 @@ class DeviceMesh {
   /// Replaces the positions. Errors: as create().
   [[nodiscard]] Result<void> upload_positions(std::span<const Vec3> positions);
 
+  /// Replaces the vertices that smoothing leaves where they are: bit v % 32 of word v / 32. At first none.
+  /// Errors: kUsage for another number of words, or for a mesh not made for smoothing; kOutOfMemory;
+  /// kNoDevice.
+  [[nodiscard]] Result<void> upload_locks(std::span<const std::uint32_t> locked);
+
   // What the device holds, once recorded work has run. Errors: kUsage for an array of a pass that the mesh
   // was not made for; kOutOfMemory; kNoDevice.
   [[nodiscard]] Result<std::vector<Vec3>> download_positions() const;
   [[nodiscard]] Result<std::vector<Vec3>> download_vertex_normals() const;
+  [[nodiscard]] Result<std::vector<Vec3>> download_triangle_normals() const;
   [[nodiscard]] Result<std::vector<float>> download_half_edge_angles() const;
+  [[nodiscard]] Result<std::vector<VertexCurvature>> download_curvatures() const;
+  [[nodiscard]] Result<SurfaceMeasures> download_surface_measures() const;
   [[nodiscard]] Result<std::vector<float>> download_vertex_maxima() const;
 
   // The buffers, for passes; those of other passes are empty (size 0).
@@ -60,22 +73,30 @@ class DeviceMesh {
   [[nodiscard]] const Buffer& neighbour_offsets() const { return neighbour_offsets_; }  ///< Vertices + 1.
   [[nodiscard]] const Buffer& neighbour_ids() const { return neighbour_ids_; }
   [[nodiscard]] const Buffer& boundary_bits() const { return boundary_bits_; }          ///< 1 bit a vertex.
+  [[nodiscard]] const Buffer& locked_bits() const { return locked_bits_; }              ///< 1 bit a vertex.
   [[nodiscard]] const Buffer& corner_offsets() const { return corner_offsets_; }        ///< Vertices + 1.
   [[nodiscard]] const Buffer& corner_half_edges() const { return corner_half_edges_; }  ///< 1 a half-edge.
   [[nodiscard]] const Buffer& face_vectors() const { return face_vectors_; }  ///< Scratch: 3 floats a face.
-  [[nodiscard]] const Buffer& vertex_normals() const { return vertex_normals_; }  ///< 3 floats a vertex.
+  [[nodiscard]] const Buffer& triangle_normals() const { return triangle_normals_; }  ///< 3 floats a face.
+  [[nodiscard]] const Buffer& vertex_normals() const { return vertex_normals_; }      ///< 3 floats a vertex.
   [[nodiscard]] const Buffer& half_edge_angles() const {
     return half_edge_angles_;
   }                                                                             ///< 1 float a half-edge.
   [[nodiscard]] const Buffer& vertex_maxima() const { return vertex_maxima_; }  ///< 1 float a vertex.
+  [[nodiscard]] const Buffer& curvatures() const { return curvatures_; }        ///< 4 floats a vertex.
+  [[nodiscard]] const Buffer& surface_measures() const { return surface_measures_; }  ///< RawMeasures.
+  // Scratch of sums over all elements.
+  [[nodiscard]] const Buffer& block_sums() const { return block_sums_; }
+  [[nodiscard]] const Buffer& more_block_sums() const { return more_block_sums_; }
 
  private:
   std::uint32_t vertices_ = 0;
   std::uint32_t faces_ = 0;
   MeshPasses passes_;
   Buffer positions_, smoothed_positions_, corners_, twins_, neighbour_offsets_, neighbour_ids_,
-      boundary_bits_, corner_offsets_, corner_half_edges_, face_vectors_, vertex_normals_, half_edge_angles_,
-      vertex_maxima_;
+      boundary_bits_, locked_bits_, corner_offsets_, corner_half_edges_, face_vectors_, triangle_normals_,
+      vertex_normals_, half_edge_angles_, vertex_maxima_, curvatures_, surface_measures_, block_sums_,
+      more_block_sums_;
 };
 
 }  // namespace vkmesh

@@ -11,6 +11,7 @@ namespace vkmesh {
 /// Records the pass of which vkmesh::vertex_normals() is the reference, equal to it bit for bit; the result
 /// is read by DeviceMesh::download_vertex_normals(). O(half-edges). Errors: kUsage unless the mesh was made
 /// for this pass.
-[[nodiscard]] Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh);
+[[nodiscard]] Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh,
+                                                 const VertexNormalsOptions& options = {});
 
 }  // namespace vkmesh

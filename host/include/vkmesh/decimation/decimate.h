@@ -1,6 +1,7 @@
-// Heap-driven decimation by half-edge collapse with quadric error.
+// Decimation by collapsing edges, cheapest first, by quadric error.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,57 +12,148 @@
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/progress.h>
 #include <vkmesh/result.h>
+#include <vkmesh/surface_distance.h>
 #include <vkmesh/vec.h>
 
 namespace vkmesh {
 
+/// What one step does to the mesh.
+enum class DecimateOperation {
+  kEdgeCollapse,     ///< Both ends of an edge become one point, which may be new.
+  kHalfEdgeCollapse  ///< One end of an edge moves to the other: no new points are made.
+};
+
+/// Where an edge collapse puts the point that remains.
+enum class DecimatePlacement {
+  kOptimal,   ///< Where the quadric error is least.
+  kMidpoint,  ///< In the middle of the edge.
+  kEndpoint   ///< At the end where the error is less: a half-edge collapse.
+};
+
+enum class DecimateBoundary {
+  kKept,     ///< Boundary vertices are locked: the boundary stays as it is.
+  kInShape,  ///< Constraint planes hold the boundary's shape; see boundary_weight.
+  kFree      ///< The boundary may shrink.
+};
+
 struct DecimateOptions {
-  /// Stop when this many faces are left (or one fewer: an interior collapse removes two). Unset: no such
-  /// bound.
+  /// Default edge collapse.
+  DecimateOperation operation = DecimateOperation::kEdgeCollapse;
+  /// Of edge collapses. Default optimal.
+  DecimatePlacement placement = DecimatePlacement::kOptimal;
+
+  // Rules to stop by, of which any number may be set; the first that is met counts. None set: until no legal
+  // collapse is left.
+  /// Stop when this many faces are left (or one fewer: an interior collapse removes two).
   std::optional<std::size_t> target_faces;
-  /// Stop before the first collapse whose error exceeds this: the root of the area-weighted mean squared
-  /// distance, in units of the positions, to the planes of the faces that the kept vertex stands for. Unset:
-  /// no such bound.
+  /// Stop when this many vertices are left, isolated ones not counted.
+  std::optional<std::size_t> target_vertices;
+  /// Stop when this share of the faces is left, in [0, 1].
+  std::optional<double> target_ratio;
+  /// Do no collapse whose error exceeds this: the root of the area-weighted mean squared distance, in units
+  /// of the positions, to the planes that the kept vertex stands for (those of faces and of the boundary).
   std::optional<double> max_error;
+  /// The same as a share of the bounding box's diagonal.
+  std::optional<double> max_relative_error;
+  /// Stop after this many seconds of work. The only rule whose result depends on the machine.
+  std::optional<double> time_limit;
+
   /// A collapse is illegal when it turns the normal of a face that remains by more than this. Radians, in (0,
-  /// π). Default 75 degrees.
+  /// π). Default 75 degrees. See `decimate`.
   double max_normal_deviation = 1.308996938995747;
+  /// Default in shape.
+  DecimateBoundary boundary = DecimateBoundary::kInShape;
   /// Weight of the constraint planes that stand on boundary edges, perpendicular to their face, relative to a
-  /// plane of the same area. 0 lets the boundary shrink. Default 100.
+  /// plane of the same area; for a boundary kept in shape. Default 100.
   double boundary_weight = 100.0;
+  /// Vertices that are neither moved nor removed, in any order. A collapse may end in one.
+  std::vector<std::uint32_t> locked_vertices;
+  /// Fill Decimated::history. Default off: it takes 28 bytes a collapse.
+  bool keep_history = false;
 };
 
 enum class DecimateStop {
-  kTargetReached,   ///< target_faces was reached.
+  kTargetReached,   ///< target_faces, target_vertices or target_ratio was reached.
   kErrorBound,      ///< No collapse is left; some were refused for their error.
-  kNoLegalCollapse  ///< Every remaining collapse is illegal (link condition, fold-over).
+  kTimeLimit,       ///< time_limit has passed.
+  kNoLegalCollapse  ///< Every remaining collapse is illegal (link condition, fold-over, locked vertices).
 };
 
-/// "target reached", "error bound", "no legal collapse".
+/// "target reached", "error bound", "time limit", "no legal collapse".
 [[nodiscard]] std::string name_of(DecimateStop stop);
 
-struct Decimated {
-  HalfEdgeMesh mesh;
-  std::vector<Vec3> positions;
-  /// For each vertex of `mesh` the vertex of the input it was; ascending. A half-edge collapse makes no new
-  /// points.
-  std::vector<std::uint32_t> source_vertex;
-  DecimateStop stop = DecimateStop::kTargetReached;
-  double error =
-      0;  ///< The largest error of a collapse that was done, in units of the positions (see max_error).
-  std::size_t collapses = 0;
-  std::size_t rejected_link = 0;  ///< Collapses found illegal because their ends share a third neighbour.
-  std::size_t rejected_fold_over = 0;  ///< Collapses found illegal because a face would fold over.
+/// One collapse. Vertices and faces are the input's.
+template <class Point>
+struct Collapse {
+  std::uint32_t kept = kInvalid;     ///< The vertex that stands for both from now on.
+  std::uint32_t removed = kInvalid;  ///< The one that it has absorbed.
+  Point position{};                  ///< Where `kept` lies from now on.
+  /// The faces that went; on the boundary one is kInvalid.
+  std::array<std::uint32_t, 2> faces{kInvalid, kInvalid};
 };
 
-/// M. Garland and P. Heckbert, "Surface simplification using quadric error metrics" (1997), restricted to
-/// half-edge collapses (lecture, "Half-edge collapse"): the cheapest legal collapse p → q is done, again and
-/// again. Costs lie in an addressable heap, so that a removal costs O(log n). Legal is what keeps the graph
-/// simple and the surface manifold (the link condition, H. Hoppe et al., "Mesh optimization", 1993) and folds
-/// no face over. Ties fall to the smaller half-edge, so the same input gives the same bytes everywhere.
-/// Isolated vertices are dropped. Errors: kUnsuitable unless triangles; kUsage for options outside their
-/// range; kInterrupted; kOutOfMemory.
+template <class Point>
+struct BasicDecimated {
+  HalfEdgeMesh mesh;
+  std::vector<Point> positions;
+  /// For each vertex of `mesh` the vertex of the input whose place it keeps in the history; ascending. A
+  /// half-edge collapse leaves it where it was.
+  std::vector<std::uint32_t> source_vertex;
+  /// For each face of `mesh` the face of the input it was; ascending. Its corners keep their order.
+  std::vector<std::uint32_t> source_face;
+  /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones, which
+  /// are dropped.
+  std::vector<std::uint32_t> vertex_map;
+  /// Every collapse in order, if asked for.
+  std::vector<Collapse<Point>> history;
+  DecimateStop stop = DecimateStop::kTargetReached;
+  /// The largest error of a collapse that was done, in units of the positions (see max_error) and as a share
+  /// of the bounding box's diagonal.
+  double error = 0, relative_error = 0;
+  std::size_t collapses = 0;
+  // How often a collapse was found illegal, and why.
+  std::size_t rejected_link = 0;       ///< It would make the surface non-manifold, or nothing.
+  std::size_t rejected_fold_over = 0;  ///< A face would fold over.
+  std::size_t rejected_error = 0;      ///< Its error is too large.
+  std::size_t rejected_locked = 0;     ///< Both ends are locked.
+};
+
+using Decimated = BasicDecimated<Vec3>;
+
+/// M. Garland and P. Heckbert, "Surface simplification using quadric error metrics" (1997): planes are
+/// weighted by area, and the legal collapse of least error is done, again and again.
+///
+/// Order: with optimal placement the error of an edge only rises, so edges lie in a MonotoneQueue under lower
+/// bounds of their errors, and a collapse is among the cheapest to 1/16 octave. Half-edge collapses go the
+/// same way. Midpoints may fall in error: their edges lie in an AddressableHeap, and the cheapest goes first.
+/// Ties fall to the order of the input, so the same input gives the same bytes everywhere.
+///
+/// Legal is a collapse that
+/// - keeps the graph simple and the surface a manifold of the same topology: the link condition, H. Hoppe et
+///   al., "Mesh optimization" (1993), with all boundary loops closed by one vertex;
+/// - folds nothing over. In the plane that is the sign of an area. In space no rule of normals alone is
+///   proof: comparing a face's normal before and after (a dot product above 0) lets two neighbours turn
+///   against each other by up to 90 degrees each, until one lies upon the other, says nothing of a face
+///   without area, and sums up over many collapses. So here: no face turns by more than
+///   max_normal_deviation; none loses its area, a sliver whose height falls below a share of its length
+///   included, unless it had none, and then it must agree with the faces around it; and no two neighbours
+///   about the kept vertex come to stand against each other by more than 120 degrees, or more than some did
+///   before.
+///
+/// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
+/// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
+/// O(n log n) for midpoints, else about O(n). Memory: about 140 bytes a vertex, 176 for midpoints, and 12
+/// more where the input's order has no locality and is replaced by one along a Morton curve. Isolated
+/// vertices are dropped. Errors: kUnsuitable unless triangles, finite and manifold; kUsage for options
+/// outside their range; kInterrupted; kOutOfMemory.
 [[nodiscard]] Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                                          const DecimateOptions& options, const Progress& progress = {});
+[[nodiscard]] Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,
+                                                     std::span<const DVec3> positions,
+                                                     const DecimateOptions& options,
+                                                     const Progress& progress = {});
+/// From arrays, without half-edges: faster than to_half_edge_mesh() and the above.
+[[nodiscard]] Result<Decimated> decimate(const TriangleSurface& surface, const DecimateOptions& options,
+                                         const Progress& progress = {});
 
 }  // namespace vkmesh

@@ -117,6 +117,47 @@ namespace detail {
   return steep ? (VKMESH_HALF_PI_HIGH - angle) + VKMESH_HALF_PI_LOW : angle;
 }
 
+/// arccos x in [0, π], within 1.5 ULP; x is held in [−1, 1] (a NaN counts as 1 with its sign).
+[[nodiscard]] inline float arccosine(float x) {
+  const std::uint32_t magnitude = std::min(detail::bits(x) & 0x7fffffffu, 0x3f800000u);
+  const bool negative = (detail::bits(x) >> 31) != 0u;
+  const float size = zero_below(detail::from_bits(magnitude), VKMESH_TINY_LENGTH);
+  // Beyond 1/2, arccos x = 2 arcsin √((1 − x) / 2), in which 1 − x is exact.
+  const bool steep = size > 0.5f;
+  const float z = zero_below(steep ? 0.5f * (1.0f - size) : size * size, VKMESH_TINY_DIRECTION);
+  const float s = steep ? root(z) : (negative ? -size : size);
+  float p = VKMESH_ASIN_5;
+  p = p * z + VKMESH_ASIN_4;
+  p = p * z + VKMESH_ASIN_3;
+  p = p * z + VKMESH_ASIN_2;
+  p = p * z + VKMESH_ASIN_1;
+  p = p * z + VKMESH_ASIN_0;
+  const float more = s * (z * p);
+  const float complement = VKMESH_HALF_PI_HIGH - (s - (VKMESH_HALF_PI_LOW - more));
+  return steep ? 2.0f * (negative ? complement : s + more) : complement;
+}
+
+/// e^x, within 1 ULP; 0 where that would be subnormal, and the largest float where it would be larger (a NaN
+/// counts as an infinity with its sign).
+[[nodiscard]] inline float exponential(float x) {
+  const bool negative = (detail::bits(x) >> 31) != 0u;
+  const bool far = (detail::bits(x) & 0x7fffffffu) > VKMESH_EXP_RANGE;
+  const float v = zero_below(far ? 0.0f : x, VKMESH_TINY_DIRECTION);
+  // x = k ln 2 + r.
+  const float shifted = v * VKMESH_LOG2_E + VKMESH_ROUNDING;
+  const float k = shifted - VKMESH_ROUNDING;
+  const float r = zero_below((v - k * VKMESH_LN2_HIGH) - k * VKMESH_LN2_LOW, VKMESH_TINY_DIRECTION);
+  float p = VKMESH_EXP_4;
+  p = p * r + VKMESH_EXP_3;
+  p = p * r + VKMESH_EXP_2;
+  p = p * r + VKMESH_EXP_1;
+  p = p * r + VKMESH_EXP_0;
+  const float y = 1.0f + (r + (r * r) * p);
+  const std::uint32_t power = detail::bits(shifted) - VKMESH_ROUNDING_BITS;
+  const bool in_range = !far && (detail::bits(y) >> 23) + power - 1u < 254u;
+  return in_range ? detail::from_bits(detail::bits(y) + (power << 23)) : (negative ? 0.0f : VKMESH_LARGEST);
+}
+
 /// |v|² for components in {0} ∪ [2^-61, 2^50].
 [[nodiscard]] inline float squared_length(Vec3 v) {
   return (v.x * v.x + v.y * v.y) + v.z * v.z;
@@ -151,6 +192,53 @@ namespace detail {
   const float apart = root(squared_length(zero_below(a - b, VKMESH_TINY_LENGTH)));
   const float along = root(squared_length(zero_below(a + b, VKMESH_TINY_LENGTH)));
   return 2.0f * first_quadrant_angle(apart, along);
+}
+
+/// |v| within 4 ULP, for components in {0} ∪ [2^-126, 2^126].
+[[nodiscard]] inline float vector_length(Vec3 v) {
+  const std::uint32_t largest =
+      std::max(std::max(detail::bits(v.x) & 0x7fffffffu, detail::bits(v.y) & 0x7fffffffu),
+               detail::bits(v.z) & 0x7fffffffu);
+  const float scale = detail::from_bits(std::max(0x7f000000u - (largest & 0x7f800000u), 0x00800000u));
+  const Vec3 w = zero_below(v * scale, VKMESH_TINY_DIRECTION);
+  return root(squared_length(w)) * detail::from_bits(largest & 0x7f800000u);
+}
+
+/// (p1 − p0) · (p2 − p0), as area_vector() is the other product.
+[[nodiscard]] inline float corner_product(Vec3 p0, Vec3 p1, Vec3 p2) {
+  const Vec3 a = zero_below(p1 - p0, VKMESH_TINY_LENGTH);
+  const Vec3 b = zero_below(p2 - p0, VKMESH_TINY_LENGTH);
+  return zero_below((a.x * b.x + a.y * b.y) + a.z * b.z, VKMESH_TINY_AREA);
+}
+
+/// x / y for y in {0} ∪ [2^-104, 2^125], held within ±bound, a power of two of which the inverse is given; 0
+/// where y is 0, and where the quotient is below 2^-100.
+[[nodiscard]] inline float bounded_quotient(float x, float y, float bound, float inverse_bound) {
+  // Compared before the division, which could overflow.
+  const float scaled = x * inverse_bound;
+  const bool high = scaled >= y, low = -scaled >= y;
+  const float ratio = zero_below((high || low ? 0.0f : x) * reciprocal(y), VKMESH_TINY_COORDINATE);
+  return y == 0.0f ? 0.0f : (high ? bound : (low ? -bound : ratio));
+}
+
+/// The cotangent of a corner's angle, from its corner_product() and the length of its area_vector(), held
+/// within ±2^10; 0 for a triangle without area, and below 2^-40.
+[[nodiscard]] inline float cotangent(float product, float twice_area) {
+  return zero_below(
+      bounded_quotient(product, twice_area, VKMESH_COTANGENT_BOUND, VKMESH_COTANGENT_BOUND_INVERSE),
+      VKMESH_TINY_DIRECTION);
+}
+
+/// The angle in [0, π] of the vector (product, twice_area), which is that of a corner of a triangle; 0 for
+/// (0, 0), and exactly 0 or π for a triangle without area. Within 4 ULP of its arguments' angle.
+[[nodiscard]] inline float corner_angle(float product, float twice_area) {
+  const std::uint32_t largest =
+      std::max(detail::bits(product) & 0x7fffffffu, detail::bits(twice_area) & 0x7fffffffu);
+  const float scale = detail::from_bits(0x7f000000u - (largest & 0x7f800000u));
+  const float x = zero_below(product * scale, VKMESH_TINY_LENGTH);
+  const float y = zero_below(twice_area * scale, VKMESH_TINY_LENGTH);
+  const float angle = first_quadrant_angle(y, std::fabs(x));
+  return x < 0.0f ? (2.0f * VKMESH_HALF_PI_HIGH - angle) + 2.0f * VKMESH_HALF_PI_LOW : angle;
 }
 
 /// What every pass asks of positions. O(n).

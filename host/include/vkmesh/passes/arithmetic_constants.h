@@ -8,6 +8,10 @@
   4.3368086899420177e-19f /* 2^-61: components of edge vectors, of sums of unit vectors */
 #define VKMESH_TINY_AREA 7.8886090522101181e-31f      /* 2^-100: components of area vectors */
 #define VKMESH_TINY_DIRECTION 9.0949470177292824e-13f /* 2^-40: components of a vector scaled to [1, 2) */
+#define VKMESH_TINY_WEIGHT 9.5367431640625e-07f       /* 2^-20: weights of neighbours in smoothing */
+
+// Sums over all elements are trees of blocks of so many.
+#define VKMESH_SUM_BLOCK 64
 
 // Seeds of Newton's iteration, close to the best for each; the iterations below absorb the rest.
 #define VKMESH_RECIPROCAL_SEED 0x7ef311c7u
@@ -27,5 +31,35 @@
 // π/2 = HIGH + LOW to 48 bits.
 #define VKMESH_HALF_PI_HIGH 1.57079637050628662109375f
 #define VKMESH_HALF_PI_LOW -4.37113900018624283e-8f
+
+// (asin(s) / s - 1) / s² on [0, 1/2] as a polynomial in s²: minimax, 2.8e-10 of asin(s).
+#define VKMESH_ASIN_0 0.16666659712791443f
+#define VKMESH_ASIN_1 0.07500505447387695f
+#define VKMESH_ASIN_2 0.044516708701848984f
+#define VKMESH_ASIN_3 0.03180991858243942f
+#define VKMESH_ASIN_4 0.014429810456931591f
+#define VKMESH_ASIN_5 0.03752942383289337f
+
+// (e^r - 1 - r) / r² for |r| <= ln(2) / 2: minimax, 3.1e-9 of e^r.
+#define VKMESH_EXP_0 0.4999999403953552f
+#define VKMESH_EXP_1 0.1666652113199234f
+#define VKMESH_EXP_2 0.04166838899254799f
+#define VKMESH_EXP_3 0.008368737064301968f
+#define VKMESH_EXP_4 0.0013814624398946762f
+#define VKMESH_LOG2_E 1.4426950216293335f
+// ln(2) = HIGH + LOW to 39 bits; HIGH has 15, so that its small multiples are exact.
+#define VKMESH_LN2_HIGH 0.693145751953125f
+#define VKMESH_LN2_LOW 1.428606765330187e-06f
+#define VKMESH_ROUNDING 12582912.0f /* 1.5 · 2^23: adding it rounds to an integer */
+#define VKMESH_ROUNDING_BITS 0x4b400000u
+#define VKMESH_EXP_RANGE 0x42d00000u /* 104, beyond which e^x is out of range on either side */
+#define VKMESH_LARGEST 3.4028234663852886e38f
+
+// Cotangents are held within ±2^10: those of angles down to 0.056 degrees.
+#define VKMESH_COTANGENT_BOUND 1024.0f
+#define VKMESH_COTANGENT_BOUND_INVERSE 0.0009765625f
+// Curvatures are held within ±2^100.
+#define VKMESH_CURVATURE_BOUND 1.2676506002282294e30f
+#define VKMESH_CURVATURE_BOUND_INVERSE 7.8886090522101181e-31f
 
 #endif

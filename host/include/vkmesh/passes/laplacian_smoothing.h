@@ -1,4 +1,4 @@
-// Uniform Laplacian smoothing.
+// Laplacian smoothing: uniform or cotangent weights, λ alone or λ|μ.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,39 @@
 
 namespace vkmesh {
 
+/// How much each neighbour of a vertex counts.
+enum class SmoothingWeights : std::uint8_t {
+  kUniform,  ///< All alike. Evens out the triangles as well.
+  /// cot α + cot β of the angles opposite the edge, of the positions before each step, held in [0, 2^11]
+  /// (M. Desbrun, M. Meyer, P. Schröder, A. H. Barr, "Implicit fairing of irregular meshes using diffusion
+  /// and curvature flow", 1999). Moves vertices along the normal only. A triangle without area gives no
+  /// weight; a vertex all of whose weights are below 2^-20 stays.
+  kCotangent,
+};
+
 struct LaplacianSmoothingOptions {
   float lambda = 0.5f;            ///< Share of the way to the neighbours' mean, in [0, 1]. Default 0.5.
   std::uint32_t iterations = 10;  ///< Jacobi steps: each reads only the positions before it. Default 10.
   bool fix_boundary = true;       ///< Boundary vertices stay where they are. Default true.
+  /// Boundary vertices, where not fixed, move along the boundary: to the mean of their two neighbours on it.
+  /// Otherwise they are as free as any. Default false.
+  bool boundary_along_itself = false;
+  SmoothingWeights weights = SmoothingWeights::kUniform;
+  /// In [−1, 0]. Unless 0, each iteration is a step by λ and a step by μ, which together keep low frequencies
+  /// (G. Taubin, "A signal processing approach to fair surface design", 1995): μ a little beyond −λ, such as
+  /// −0.53 for λ = 0.5. Default 0.
+  float mu = 0.0f;
+  /// Bit v % 32 of word v / 32: vertex v stays. Empty: none. On a device DeviceMesh::upload_locks() takes
+  /// this instead.
+  std::span<const std::uint32_t> locked = {};
 };
 
-/// v ← v + λ (mean of its neighbours − v), `iterations` times, all vertices at once (lecture, "Mesh
+/// v ← v + λ (weighted mean of its neighbours − v), `iterations` times, all vertices at once (lecture, "Mesh
 /// smoothing"). Neighbours are summed in NodeNeighbours order; isolated vertices stay. The reference of
-/// shaders/laplacian_smoothing.comp, equal to it bit for bit. Coordinates below 2^-100 in magnitude become 0.
-/// O(iterations × edges).
-/// Errors: kUsage for λ outside [0, 1] or a wrong number of positions; kOutOfMemory; kInterrupted.
+/// shaders/laplacian_smoothing.comp and cotangent_smoothing.comp, equal to them bit for bit. Coordinates
+/// below 2^-100 in magnitude become 0. Cotangent weights take the neighbours of a triangle mesh. O(iterations
+/// × edges). Errors: kUsage for λ outside [0, 1], μ outside [−1, 0], a wrong number of positions or of locked
+/// vertices; kOutOfMemory; kInterrupted.
 [[nodiscard]] Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
                                                             std::span<const Vec3> positions,
                                                             const LaplacianSmoothingOptions& options = {},

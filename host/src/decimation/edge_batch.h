@@ -1,0 +1,82 @@
+// Quadric errors of many edges at once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "decimation/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+/// Edges (p, q), one a lane.
+struct EdgeBatch {
+  static constexpr std::size_t kSize = 128;
+  /// Kernels work on whole blocks of lanes: what lies in lanes that were not set does not matter.
+  static constexpr std::size_t kBlock = 16;
+  using Lanes = std::array<float, kSize>;
+  /// The sixteen words of a CollapseVertex.
+  using Words = std::array<Lanes, 16>;
+
+  alignas(64) Words p, q;
+  /// Where the point must stay: 1 at p, 2 at q, 0 anywhere, 3: both ends are locked.
+  alignas(64) std::array<std::int32_t, kSize> end;
+  alignas(64) std::array<Lanes, 3> x;  // result: where the point goes, relative to p
+  alignas(64) Lanes cost;              // result: the sum of both quadrics there
+
+  /// Sets the lanes [0, count): ends(lane) returns the pair of vertices. Four records are turned at a time
+  /// from rows to columns.
+  template <class Ends>
+  void gather(std::size_t count, Ends&& ends) {
+    for (std::size_t lane = 0; lane < count; lane += 4) {
+      std::array<const CollapseVertex*, 4> ps, qs;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto [a, b] = ends(lane + i < count ? lane + i : count - 1);
+        ps[i] = a;
+        qs[i] = b;
+      }
+      turn(ps, p, lane);
+      turn(qs, q, lane);
+    }
+  }
+
+ private:
+#if defined(__GNUC__) || defined(__clang__)
+  using Four = float __attribute__((vector_size(16)));
+  static void turn(const std::array<const CollapseVertex*, 4>& from, Words& to, std::size_t lane) {
+    for (std::size_t g = 0; g < 16; g += 4) {
+      std::array<Four, 4> r;
+      for (std::size_t i = 0; i < 4; ++i)
+        __builtin_memcpy(&r[i], reinterpret_cast<const char*>(from[i]) + 4 * g, 16);
+      const Four a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
+                 b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
+      const Four c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
+                 d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+      const std::array<Four, 4> s = {
+          __builtin_shufflevector(a, b, 0, 1, 4, 5), __builtin_shufflevector(a, b, 2, 3, 6, 7),
+          __builtin_shufflevector(c, d, 0, 1, 4, 5), __builtin_shufflevector(c, d, 2, 3, 6, 7)};
+      for (std::size_t i = 0; i < 4; ++i) __builtin_memcpy(&to[g + i][lane], &s[i], 16);
+    }
+  }
+#else
+  static void turn(const std::array<const CollapseVertex*, 4>& from, Words& to, std::size_t lane) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = 0; k < 16; ++k)
+        std::memcpy(&to[k][lane + i], reinterpret_cast<const char*>(from[i]) + 4 * k, 4);
+  }
+#endif
+};
+
+// Each fills end, x and cost of the lanes below `count`. The bytes are the same on every machine: no
+// operation of one lane depends on another.
+
+/// The point of least error; where that is not determined, the nearest such point to the middle. A locked
+/// end is the only choice.
+void place_optimally(EdgeBatch& batch, std::size_t count);
+/// The middle of the edge.
+void place_in_middle(EdgeBatch& batch, std::size_t count);
+/// The end of less error; q when they are equal.
+void place_at_end(EdgeBatch& batch, std::size_t count);
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,12 @@
+// Compiling a function once for each instruction set.
+#pragma once
+
+// Chosen when the program starts. The bytes do not change: none of these sets brings fused multiply-add to
+// the compiler's mind (-ffp-contract=off), and lanes do not mix. Sanitizers run before the choice can be
+// made.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define VKMESH_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define VKMESH_CLONES
+#endif

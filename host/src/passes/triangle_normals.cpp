@@ -1,0 +1,26 @@
+#include <vkmesh/passes/triangle_normals.h>
+
+#include "catching.h"
+#include "parallel.h"
+#include "passes/blocks.h"
+#include "passes/pass_input.h"
+
+namespace vkmesh {
+
+Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
+  return detail::catching([&]() -> Result<std::vector<Vec3>> {
+    VKMESH_CHECK(detail::require_triangles(mesh, "triangle_normals"));
+    VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+    const std::span<const Vec3> p = positions;
+    const auto corners = mesh.origins();
+    std::vector<Vec3> normals(mesh.face_count());
+    detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f)
+        normals[f] = area_vector(p[corners[3 * f]], p[corners[3 * f + 1]], p[corners[3 * f + 2]]);
+      detail::to_unit_vectors(std::span(normals).subspan(begin, end - begin));
+    });
+    return normals;
+  });
+}
+
+}  // namespace vkmesh

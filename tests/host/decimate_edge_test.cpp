@@ -1,0 +1,388 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/consolidate.h>
+#include <vkmesh/decimation/decimate.h>
+#include <vkmesh/io/mesh_io.h>
+#include <vkmesh/triangulate.h>
+
+#include "support/data.h"
+#include "support/shapes.h"
+
+namespace vkmesh {
+namespace {
+
+using test::half_edges;
+
+template <class Point>
+BasicDecimated<Point> run(const HalfEdgeMesh& mesh, const std::vector<Point>& points,
+                          const DecimateOptions& options) {
+  auto result = decimate(mesh, points, options);
+  if (!result) FAIL(result.error().describe());
+  return std::move(*result);
+}
+Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
+  return run(half_edges(mesh), mesh.points, options);
+}
+
+/// Each way to collapse.
+std::vector<DecimateOptions> ways() {
+  std::vector<DecimateOptions> all(4);
+  all[1].placement = DecimatePlacement::kMidpoint;
+  all[2].placement = DecimatePlacement::kEndpoint;
+  all[3].operation = DecimateOperation::kHalfEdgeCollapse;
+  return all;
+}
+
+template <class A, class B>
+DVec3 cross(const A& a, const B& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(const DVec3& a, const DVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// Does a history over again on triangles in a list, and judges each step: no half-edges, no quadrics.
+class Replay {
+ public:
+  Replay(const IndexedFaceSet& mesh, double max_deviation) : cos_deviation_(std::cos(max_deviation)) {
+    for (const Vec3& p : mesh.points) points_.emplace_back(p);
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      faces_[static_cast<std::uint32_t>(f)] = {mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]};
+  }
+
+  void step(const Collapse<Vec3>& c) {
+    const int before = characteristic();
+    std::map<std::uint32_t, DVec3> normals;
+    for (const auto& [f, face] : faces_) normals[f] = normal(face);
+    points_[c.kept] = DVec3(c.position);
+    std::size_t gone = 0;
+    for (auto it = faces_.begin(); it != faces_.end();) {
+      auto& face = it->second;
+      std::replace(face.begin(), face.end(), c.removed, c.kept);
+      if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
+        CHECK((it->first == c.faces[0] || it->first == c.faces[1]));
+        ++gone;
+        it = faces_.erase(it);
+      } else {
+        ++it;
+      }
+    }
+    CHECK(gone == (c.faces[0] != kInvalid ? 1u : 0u) + (c.faces[1] != kInvalid ? 1u : 0u));
+    CHECK(gone > 0);
+    CHECK(characteristic() == before);
+    // Rounding of the library's positions, which are relative to the box.
+    constexpr double kRounding = 1e-4;
+    for (const auto& [f, face] : faces_) {
+      const DVec3 now = normal(face), was = normals[f];
+      const double lengths = std::sqrt(dot(now, now) * dot(was, was));
+      CHECK(dot(now, was) >= (cos_deviation_ - kRounding) * lengths);
+    }
+    // Simple and oriented: each directed edge at most once.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& [f, face] : faces_)
+      for (std::size_t i = 0; i < 3; ++i) REQUIRE(edges.insert({face[i], face[(i + 1) % 3]}).second);
+  }
+
+  [[nodiscard]] const std::map<std::uint32_t, std::array<std::uint32_t, 3>>& faces() const { return faces_; }
+  [[nodiscard]] const DVec3& point(std::uint32_t v) const { return points_[v]; }
+
+ private:
+  [[nodiscard]] DVec3 normal(const std::array<std::uint32_t, 3>& f) const {
+    return cross(points_[f[1]] - points_[f[0]], points_[f[2]] - points_[f[0]]);
+  }
+  [[nodiscard]] int characteristic() const {
+    std::set<std::uint32_t> used;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& [f, face] : faces_)
+      for (std::size_t i = 0; i < 3; ++i) {
+        used.insert(face[i]);
+        edges.insert(std::minmax(face[i], face[(i + 1) % 3]));
+      }
+    return static_cast<int>(used.size()) - static_cast<int>(edges.size()) + static_cast<int>(faces_.size());
+  }
+
+  double cos_deviation_;
+  std::vector<DVec3> points_;
+  std::map<std::uint32_t, std::array<std::uint32_t, 3>> faces_;
+};
+
+/// Six grids welded along their edges: a cube of side 1 at (shift, shift, 0).
+IndexedFaceSet cut_cube(float shift) {
+  constexpr int kCuts = 8;
+  IndexedFaceSet mesh;
+  std::map<std::array<int, 3>, std::uint32_t> index;
+  const auto point = [&](const std::array<int, 3>& p) {
+    const auto [place, is_new] = index.try_emplace(p, static_cast<std::uint32_t>(mesh.points.size()));
+    if (is_new)
+      mesh.points.emplace_back(shift + static_cast<float>(p[0]) / kCuts,
+                               shift + static_cast<float>(p[1]) / kCuts, static_cast<float>(p[2]) / kCuts);
+    return place->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {0, kCuts})
+      for (int i = 0; i < kCuts; ++i)
+        for (int j = 0; j < kCuts; ++j) {
+          std::array<std::uint32_t, 4> corner{};
+          const int square[4][2] = {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}};
+          for (std::size_t k = 0; k < 4; ++k) {
+            std::array<int, 3> p{};
+            p[axis] = side;
+            p[(axis + 1) % 3] = square[k][0];
+            p[(axis + 2) % 3] = square[k][1];
+            corner[k] = point(p);
+          }
+          if (side == 0) std::swap(corner[1], corner[3]);
+          mesh.corners.insert(mesh.corners.end(),
+                              {corner[0], corner[1], corner[2], corner[0], corner[2], corner[3]});
+        }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("decimation: each collapse of a history is legal, and the history leads to the result",
+          "[decimate]") {
+  for (const DecimateOptions& way : ways())
+    for (std::uint32_t seed = 0; seed < 4; ++seed)
+      for (const IndexedFaceSet& shape :
+           {test::icosphere(2), test::torus(9, 5), test::grid(6, 5), test::cylinder(4, 7),
+            test::both(test::cube(), test::torus(5, 4))}) {
+        IndexedFaceSet mesh = shape;
+        if (seed > 0) test::jitter(mesh, 0.1f * static_cast<float>(seed), seed);
+        DecimateOptions options = way;
+        options.keep_history = true;
+        options.max_normal_deviation = seed % 2 == 0 ? 1.3 : 2.5;
+        options.boundary = seed == 2 ? DecimateBoundary::kFree : DecimateBoundary::kInShape;
+        const HalfEdgeMesh input = half_edges(mesh);
+        const Decimated result = run(input, mesh.points, options);
+        REQUIRE(validate(result.mesh));
+        REQUIRE(result.mesh.face_count() > 0);
+        CHECK(result.stop == DecimateStop::kNoLegalCollapse);
+        CHECK(result.history.size() == result.collapses);
+        CHECK(result.collapses > 3);
+        Replay replay(mesh, options.max_normal_deviation);
+        std::vector<std::uint32_t> stands(mesh.points.size());
+        std::iota(stands.begin(), stands.end(), 0u);
+        for (const Collapse<Vec3>& c : result.history) {
+          replay.step(c);
+          std::replace(stands.begin(), stands.end(), c.removed, c.kept);
+        }
+        REQUIRE(replay.faces().size() == result.mesh.face_count());
+        std::uint32_t f = 0;
+        for (const auto& [source, face] : replay.faces()) {
+          CHECK(result.source_face[f] == source);
+          for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t v = result.mesh.origins()[3 * f + i];
+            CHECK(result.source_vertex[v] == face[i]);
+            CHECK(DVec3(result.positions[v]) == replay.point(face[i]));
+          }
+          ++f;
+        }
+        for (std::uint32_t v = 0; v < stands.size(); ++v)
+          CHECK(result.source_vertex[result.vertex_map[v]] == stands[v]);
+      }
+}
+
+TEST_CASE("decimation: flat sheets, cubes and tetrahedra, each way", "[decimate]") {
+  for (DecimateOptions options : ways()) {
+    options.target_faces = 0;
+    const Decimated tetrahedron = run(test::tetrahedron(), options);
+    CHECK(tetrahedron.stop == DecimateStop::kNoLegalCollapse);
+    CHECK(tetrahedron.collapses == 0);
+    if (options.placement == DecimatePlacement::kMidpoint) continue;  // would round corners off
+
+    const Decimated sheet = run(test::grid(12, 9), [&] {
+      DecimateOptions o = options;
+      o.target_faces = 2;
+      return o;
+    }());
+    REQUIRE(sheet.mesh.face_count() == 2);
+    // A few roundings of float, over the box of 15.
+    CHECK(sheet.relative_error < 1e-5);
+    for (const Vec3& p : sheet.positions) {
+      CHECK(p.x == Approx(p.x < 6 ? 0 : 12).margin(1e-4));
+      CHECK(p.y == Approx(p.y < 4 ? 0 : 9).margin(1e-4));
+    }
+    for (const float shift : {0.0f, 1000.0f, 1.0e6f}) {
+      options.target_faces = 12;
+      const Decimated cube = run(cut_cube(shift), options);
+      REQUIRE(cube.mesh.face_count() == 12);
+      CHECK(cube.positions.size() == 8);
+      CHECK(cube.relative_error < 1e-5);
+      for (const Vec3& p : cube.positions)
+        for (const float x : {p.x - shift, p.y - shift, p.z})
+          CHECK(std::min(std::fabs(x), std::fabs(x - 1)) < 1e-5f);
+    }
+  }
+}
+
+TEST_CASE("decimation: locked vertices and a boundary that is kept stay where they are", "[decimate]") {
+  for (DecimateOptions options : ways()) {
+    IndexedFaceSet mesh = test::grid(9, 9);
+    test::jitter(mesh, 0.2f, 3);
+    const HalfEdgeMesh input = half_edges(mesh);
+    options.boundary = DecimateBoundary::kKept;
+    options.locked_vertices = {44, 55};
+    const Decimated result = run(input, mesh.points, options);
+    CHECK(result.collapses > 20);
+    CHECK(result.rejected_locked > 0);
+    for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
+      if (!input.is_boundary(VertexId(v)) && v != 44 && v != 55) continue;
+      REQUIRE(std::binary_search(result.source_vertex.begin(), result.source_vertex.end(), v));
+      CHECK(result.positions[result.vertex_map[v]] == mesh.points[v]);
+    }
+    CHECK(result.mesh.boundary_half_edge_count() == input.boundary_half_edge_count());
+  }
+}
+
+TEST_CASE("decimation: each rule to stop by", "[decimate]") {
+  IndexedFaceSet mesh = test::icosphere(4);
+  test::jitter(mesh, 0.01f, 2);
+  for (DecimateOptions options : ways()) {
+    DecimateOptions by = options;
+    by.target_vertices = 100;
+    Decimated result = run(mesh, by);
+    CHECK(result.stop == DecimateStop::kTargetReached);
+    CHECK(result.mesh.vertex_count() == 100);
+    by = options;
+    by.target_ratio = 0.25;
+    result = run(mesh, by);
+    CHECK(result.stop == DecimateStop::kTargetReached);
+    CHECK(result.mesh.face_count() == mesh.face_count() / 4);
+    by.target_faces = mesh.face_count() / 2;  // the first that is met
+    CHECK(run(mesh, by).mesh.face_count() == mesh.face_count() / 2);
+    by = options;
+    by.time_limit = 0;
+    result = run(mesh, by);
+    CHECK(result.stop == DecimateStop::kTimeLimit);
+    CHECK(result.collapses == 0);
+    for (const double bound : {0.002, 0.01}) {
+      by = options;
+      by.max_relative_error = bound;
+      result = run(mesh, by);
+      CHECK(result.stop == DecimateStop::kErrorBound);
+      CHECK(result.rejected_error > 0);
+      CHECK(result.relative_error <= bound);
+      CHECK(result.relative_error > 0.5 * bound);
+      by.max_relative_error.reset();
+      by.max_error = result.error;
+      CHECK(run(mesh, by).error <= result.error);
+    }
+    for (const double wrong : {-1.0, std::nan("")}) {
+      by = options;
+      by.max_relative_error = wrong;
+      CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
+      by = options;
+      by.target_ratio = wrong;
+      CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
+      by = options;
+      by.time_limit = wrong;
+      CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
+    }
+    by = options;
+    by.locked_vertices = {static_cast<std::uint32_t>(mesh.points.size())};
+    CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
+  }
+}
+
+TEST_CASE("decimation: detail of a thousandth a million away, in double precision", "[decimate]") {
+  const IndexedFaceSet sphere = test::icosphere(3);
+  std::vector<DVec3> near, far;
+  for (const Vec3& p : sphere.points) {
+    near.push_back(DVec3(Vec3(std::round(p.x * 1024), std::round(p.y * 1024), std::round(p.z * 1024))) /
+                   1048576.0);
+    far.push_back(near.back() + DVec3(1e6, -1e6, 1e6));  // exact: steps of 2^-20
+  }
+  for (DecimateOptions options : ways()) {
+    options.target_faces = 200;
+    const auto a = run(half_edges(sphere), near, options), b = run(half_edges(sphere), far, options);
+    CHECK(a.source_vertex == b.source_vertex);
+    CHECK(a.error == b.error);
+    // A double has steps of 2^-33 there.
+    for (std::size_t v = 0; v < a.positions.size(); ++v)
+      for (int k = 0; k < 3; ++k)
+        CHECK(std::fabs(b.positions[v][k] - (k == 1 ? -1e6 : 1e6) - a.positions[v][k]) <
+              std::ldexp(1.0, -32));
+  }
+}
+
+TEST_CASE("decimation: shuffled input is put in order, and comes out in its own", "[decimate]") {
+  IndexedFaceSet mesh = test::icosphere(6);  // 40,962 points
+  std::mt19937 random(1);
+  std::vector<std::uint32_t> place(mesh.points.size());
+  std::iota(place.begin(), place.end(), 0u);
+  std::shuffle(place.begin(), place.end(), random);
+  IndexedFaceSet shuffled = mesh;
+  for (std::size_t v = 0; v < place.size(); ++v) shuffled.points[place[v]] = mesh.points[v];
+  for (std::uint32_t& c : shuffled.corners) c = place[c];
+  for (DecimateOptions options : ways()) {
+    options.target_faces = 2000;
+    options.locked_vertices = {7, 40000};
+    const auto result = decimate(TriangleSurface{shuffled.points, shuffled.corners}, options);
+    REQUIRE(result);
+    REQUIRE(validate(result->mesh));
+    CHECK(result->mesh.face_count() == 2000);
+    CHECK(std::is_sorted(result->source_vertex.begin(), result->source_vertex.end()));
+    CHECK(std::is_sorted(result->source_face.begin(), result->source_face.end()));
+    for (const std::uint32_t v : {7u, 40000u})
+      CHECK(result->positions[result->vertex_map[v]] == shuffled.points[v]);
+    // What stands for a point is near it: no triangle of 2,000 on the sphere spans more than half a radius.
+    for (std::uint32_t v = 0; v < place.size(); ++v) {
+      const DVec3 d = DVec3(result->positions[result->vertex_map[v]]) - DVec3(shuffled.points[v]);
+      REQUIRE(dot(d, d) < 0.25);
+    }
+  }
+}
+
+TEST_CASE("decimation: arrays that are no oriented manifold are refused", "[decimate]") {
+  for (const IndexedFaceSet& mesh :
+       {test::bow_tie(), test::fin(), test::tori_sharing_a_point(), test::mobius(5)}) {
+    const auto result = decimate(TriangleSurface{mesh.points, mesh.corners}, {});
+    REQUIRE_FALSE(result);
+    CHECK(result.error().code == ErrorCode::kUnsuitable);
+  }
+  const std::vector<Vec3> points(3);
+  CHECK_FALSE(decimate(TriangleSurface{points, std::vector<std::uint32_t>{0, 1, 3}}, {}));
+  CHECK_FALSE(decimate(TriangleSurface{points, std::vector<std::uint32_t>{0, 1}}, {}));
+}
+
+TEST_CASE("decimation: every manifold mesh of the CGAL collection, each way and at any ratio",
+          "[decimate][data]") {
+  std::size_t tried = 0;
+  for (const auto& path : test::cgal_meshes()) {
+    auto file = read_mesh(path);
+    if (!file) continue;
+    auto mesh = to_indexed_face_set(std::move(*file));
+    if (!mesh || mesh->face_count() == 0) continue;
+    auto triangles = triangulate(*mesh);
+    REQUIRE(triangles);
+    const auto input = to_half_edge_mesh(triangles->mesh);
+    if (!input) continue;
+    ++tried;
+    for (DecimateOptions options : ways())
+      for (const double ratio : {0.5, 0.1, 0.02, 0.005}) {
+        INFO(path << " to " << ratio);
+        options.target_ratio = ratio;
+        const Decimated result = run(*input, triangles->mesh.points, options);
+        const auto valid = validate(result.mesh);
+        if (!valid) FAIL(valid.error().describe());
+        CHECK(result.mesh.face_count() > 0);
+        CHECK(result.mesh.boundary_loops().size() == input->boundary_loops().size());
+      }
+  }
+  CHECK(tried > 50);
+}
+
+}  // namespace vkmesh
