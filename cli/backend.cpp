@@ -4,7 +4,6 @@
 
 #include <vkmesh/node_neighbours.h>
 #include <vkmesh/passes/dihedral_angles.h>
-#include <vkmesh/passes/vertex_normals.h>
 
 namespace vkmesh::cli {
 namespace {
@@ -13,9 +12,9 @@ class HostBackend : public Backend {
  public:
   explicit HostBackend(Job& job) : job_(job) {}
 
-  Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
-                                           std::span<const Vec3> positions) override {
-    return job_.timed("compute", [&] { return vkmesh::vertex_normals(mesh, positions); });
+  Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                           const VertexNormalsOptions& options) override {
+    return job_.timed("compute", [&] { return vkmesh::vertex_normals(mesh, positions, options); });
   }
 
   Result<std::vector<float>> largest_dihedral_angles(const HalfEdgeMesh& mesh,

@@ -8,6 +8,7 @@
 
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/vertex_normals.h>
 #include <vkmesh/result.h>
 #include <vkmesh/vec.h>
 
@@ -29,7 +30,8 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
 
   [[nodiscard]] virtual Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
-                                                                 std::span<const Vec3> positions) = 0;
+                                                                 std::span<const Vec3> positions,
+                                                                 const VertexNormalsOptions& options) = 0;
   /// DihedralAngles::vertex_maximum.
   [[nodiscard]] virtual Result<std::vector<float>> largest_dihedral_angles(
       const HalfEdgeMesh& mesh, std::span<const Vec3> positions) = 0;

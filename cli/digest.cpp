@@ -56,14 +56,32 @@ Pass pass(std::string name, Compute compute) {
           }};
 }
 
+Pass normals(std::string name, NormalWeights weights) {
+  return pass(std::move(name), [weights](Backend& b, const Input& in) {
+    return b.vertex_normals(in.mesh, in.positions, {weights});
+  });
+}
+
+Pass smoothing(std::string name, LaplacianSmoothingOptions options) {
+  return pass(std::move(name), [options](Backend& b, const Input& in) {
+    return b.laplacian_smoothing(in.mesh, in.positions, options);
+  });
+}
+
 const std::vector<Pass>& passes() {
   static const std::vector<Pass> all = {
-      pass("vertex-normals",
-           [](Backend& b, const Input& in) { return b.vertex_normals(in.mesh, in.positions); }),
+      normals("vertex-normals", NormalWeights::kArea),
+      normals("vertex-normals-by-angle", NormalWeights::kAngle),
+      normals("vertex-normals-uniform", NormalWeights::kUniform),
       pass("dihedral-angles",
            [](Backend& b, const Input& in) { return b.largest_dihedral_angles(in.mesh, in.positions); }),
-      pass("laplacian-smoothing",
-           [](Backend& b, const Input& in) { return b.laplacian_smoothing(in.mesh, in.positions, {}); }),
+      smoothing("laplacian-smoothing", {}),
+      smoothing("taubin-smoothing", {.mu = -0.53f}),
+      smoothing("cotangent-smoothing", {.weights = SmoothingWeights::kCotangent}),
+      smoothing("cotangent-taubin-along-boundary", {.fix_boundary = false,
+                                                    .boundary_along_itself = true,
+                                                    .weights = SmoothingWeights::kCotangent,
+                                                    .mu = -0.53f}),
   };
   return all;
 }

@@ -1,16 +1,20 @@
-// vkmesh normals: area-weighted vertex normals.
+// vkmesh normals: vertex normals.
+#include <map>
+#include <memory>
+#include <string>
+
 #include "backend.h"
 #include "commands.h"
 
 namespace vkmesh::cli {
 namespace {
 
-Result<void> run(Job& job) {
+Result<void> run(Job& job, const VertexNormalsOptions& options) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
-  VKMESH_TRY(const std::vector<Vec3> normals, backend->vertex_normals(half_edges, mesh.points));
+  VKMESH_TRY(const std::vector<Vec3> normals, backend->vertex_normals(half_edges, mesh.points, options));
 
   std::size_t undefined = 0;
   std::vector<float> values;
@@ -31,7 +35,7 @@ Result<void> run(Job& job) {
 }  // namespace
 
 void add_normals(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("normals", "Computes area-weighted vertex normals");
+  CLI::App* command = app.add_subcommand("normals", "Computes vertex normals");
   command->footer(
       "Written as the PLY properties nx ny nz (OBJ: vn), beside what the input holds. Polygons stay; their "
       "normals "
@@ -39,9 +43,18 @@ void add_normals(CLI::App& app, Program& program) {
       "Example:\n  vkmesh normals data/dragon/dragon_vrip.ply.gz normals.ply");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
-  command->callback([&program] {
+  const auto options = std::make_shared<VertexNormalsOptions>();
+  const std::map<std::string, NormalWeights> weights = {
+      {"area", NormalWeights::kArea}, {"angle", NormalWeights::kAngle}, {"uniform", NormalWeights::kUniform}};
+  command
+      ->add_option("--weights", options->weights,
+                   "How much each triangle around a vertex counts: by its area (default), by its angle at\n"
+                   "the vertex, or uniform")
+      ->type_name("area|angle|uniform")
+      ->transform(CLI::CheckedTransformer(weights).description(""));
+  command->callback([&program, options] {
     program.command = "normals";
-    program.action = run;
+    program.action = [options](Job& job) { return run(job, *options); };
   });
 }
 

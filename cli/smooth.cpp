@@ -1,6 +1,9 @@
-// vkmesh smooth: uniform Laplacian smoothing.
+// vkmesh smooth: Laplacian smoothing.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "backend.h"
 #include "commands.h"
@@ -24,14 +27,20 @@ Result<void> run(Job& job, const LaplacianSmoothingOptions& options) {
   }
   const double mean = smoothed.empty() ? 0 : sum / static_cast<double>(smoothed.size());
   mesh.points = std::move(smoothed);
-  job.json()["result"] = {{"lambda", options.lambda},
-                          {"iterations", options.iterations},
-                          {"boundary_fixed", options.fix_boundary},
-                          {"mean_move", mean},
-                          {"largest_move", largest}};
+  job.json()["result"] = {
+      {"lambda", options.lambda},
+      {"mu", options.mu},
+      {"iterations", options.iterations},
+      {"weights", options.weights == SmoothingWeights::kUniform ? "uniform" : "cotangent"},
+      {"boundary", options.fix_boundary            ? "fixed"
+                   : options.boundary_along_itself ? "along"
+                                                   : "free"},
+      {"mean_move", mean},
+      {"largest_move", largest}};
   job.row("smoothed", count_of(options.iterations, "step") + " with lambda " +
-                          brief(static_cast<double>(options.lambda)) + "; points moved by " + brief(mean) +
-                          " on average, " + brief(largest) + " at most");
+                          brief(static_cast<double>(options.lambda)) +
+                          (options.mu < 0 ? " and mu " + brief(static_cast<double>(options.mu)) : "") +
+                          "; points moved by " + brief(mean) + " on average, " + brief(largest) + " at most");
 
   // Normals of the surface as it was would shade the new one wrongly.
   for (auto* channels : {&mesh.point_channels, &mesh.corner_channels, &mesh.face_channels})
@@ -44,7 +53,7 @@ Result<void> run(Job& job, const LaplacianSmoothingOptions& options) {
 }  // namespace
 
 void add_smooth(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("smooth", "Smooths by uniform Laplacian steps");
+  CLI::App* command = app.add_subcommand("smooth", "Smooths by Laplacian steps");
   command->footer(
       "Each step moves every point by lambda of the way to the mean of its neighbours, all points at once. "
       "Polygons "
@@ -61,8 +70,31 @@ void add_smooth(CLI::App& app, Program& program) {
   command->add_option("--iterations", options->iterations, "Number of steps, from 0 to 1000000; default 10")
       ->type_name("N")
       ->check(count_up_to(1000000));
-  command->add_flag_callback(
-      "--free-boundary", [options] { options->fix_boundary = false; }, "Move boundary points as well");
+  command
+      ->add_option(
+          "--mu", options->mu,
+          "A second step of each iteration, backwards, from -1 to 0; a little beyond -lambda, such as\n"
+          "-0.53, the surface does not shrink (Taubin); default 0, none")
+      ->type_name("M")
+      ->check(number_between(-1, 0));
+  const std::map<std::string, SmoothingWeights> weights = {{"uniform", SmoothingWeights::kUniform},
+                                                           {"cotangent", SmoothingWeights::kCotangent}};
+  command
+      ->add_option("--weights", options->weights,
+                   "How much each neighbour counts: uniform (default), or cotangent, which moves points\n"
+                   "along the normal and keeps the shapes of triangles")
+      ->type_name("uniform|cotangent")
+      ->transform(CLI::CheckedTransformer(weights).description(""));
+  command
+      ->add_option_function<std::string>(
+          "--boundary",
+          [options](const std::string& how) {
+            options->fix_boundary = how == "fixed";
+            options->boundary_along_itself = how == "along";
+          },
+          "What points on the boundary do: fixed (default), along (they move along the boundary), free")
+      ->type_name("HOW")
+      ->check(CLI::IsMember({"fixed", "along", "free"}).description(""));
   command->callback([&program, options] {
     program.command = "smooth";
     program.action = [options](Job& job) { return run(job, *options); };

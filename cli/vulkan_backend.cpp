@@ -20,10 +20,10 @@ class VulkanBackend : public Backend {
  public:
   VulkanBackend(Job& job, std::unique_ptr<Context> context) : job_(job), context_(std::move(context)) {}
 
-  Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
-                                           std::span<const Vec3> positions) override {
+  Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                           const VertexNormalsOptions& options) override {
     VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.vertex_normals = true}));
-    VKMESH_CHECK(run([&](Recorder& recorder) { return record_vertex_normals(recorder, device); }));
+    VKMESH_CHECK(run([&](Recorder& recorder) { return record_vertex_normals(recorder, device, options); }));
     return job_.timed("download", [&] { return device.download_vertex_normals(); });
   }
 

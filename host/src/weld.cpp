@@ -247,4 +247,20 @@ Result<IndexedFaceSet> weld(const PolygonSoup& soup) {
   });
 }
 
+Result<PolygonSoup> to_polygon_soup(const IndexedFaceSet& mesh) {
+  return detail::catching([&]() -> Result<PolygonSoup> {
+    PolygonSoup soup;
+    soup.corners.reserve(mesh.corners.size());
+    for (const std::uint32_t c : mesh.corners) {
+      if (c >= mesh.points.size())
+        return fail(ErrorCode::kUsage, "a face names point " + std::to_string(c) + ", but there are " +
+                                           std::to_string(mesh.points.size()) + " points");
+      soup.corners.push_back(mesh.points[c]);
+    }
+    soup.face_offsets = mesh.face_offsets;
+    soup.face_channels = mesh.face_channels;
+    return soup;
+  });
+}
+
 }  // namespace vkmesh

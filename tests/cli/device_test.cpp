@@ -68,10 +68,13 @@ TEST_CASE("auto takes no software device", "[device]") {
 }
 
 TEST_CASE("The CPU and the device write the same bytes, at every vector width", "[device]") {
-  const std::vector<std::vector<std::string>> commands = {{"normals"},
-                                                          {"curvature"},
-                                                          {"smooth", "--iterations", "5"},
-                                                          {"smooth", "--iterations", "3", "--free-boundary"}};
+  const std::vector<std::vector<std::string>> commands = {
+      {"normals"},
+      {"curvature"},
+      {"smooth", "--iterations", "5"},
+      {"smooth", "--iterations", "3", "--boundary", "free"},
+      {"smooth", "--iterations", "3", "--mu", "-0.53", "--weights", "cotangent", "--boundary", "along"},
+      {"normals", "--weights", "angle"}};
   for (const auto& command : commands) {
     CAPTURE(command);
     const Scratch scratch;

@@ -87,7 +87,7 @@ TEST_CASE("smooth keeps the boundary unless told otherwise") {
     return mesh_in(scratch.path("out.ply")).points[0] != mesh_in(in).points[0];  // A corner of the grid.
   };
   CHECK_FALSE(moved({}));
-  CHECK(moved({"--free-boundary"}));
+  CHECK(moved({"--boundary", "free"}));
 }
 
 TEST_CASE("smooth leaves normals out that no longer fit, and says so") {

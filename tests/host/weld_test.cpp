@@ -193,3 +193,22 @@ TEST_CASE("what cannot be welded is a usage error", "[weld]") {
   mesh.corners[0] = 77;
   CHECK(weld(mesh).error().code == ErrorCode::kUsage);
 }
+
+TEST_CASE("faces come back from a soup of them", "[weld]") {
+  IndexedFaceSet quads = test::quad_cube();
+  quads.face_channels = {{"id", 1, std::vector<std::int32_t>{1, 2, 3, 4, 5, 6}}};
+  for (const IndexedFaceSet& mesh : {quads, test::torus(7, 5)}) {
+    const IndexedFaceSet back = weld(to_polygon_soup(mesh).value()).value();
+    CHECK(back.face_offsets == mesh.face_offsets);
+    CHECK(back.points.size() == mesh.points.size());
+    REQUIRE(back.corners.size() == mesh.corners.size());
+    for (std::size_t c = 0; c < mesh.corners.size(); ++c)
+      CHECK(back.points[back.corners[c]] == mesh.points[mesh.corners[c]]);
+    REQUIRE(back.face_channels.size() == mesh.face_channels.size());
+    for (std::size_t i = 0; i < mesh.face_channels.size(); ++i)
+      CHECK(back.face_channels[i].values == mesh.face_channels[i].values);
+  }
+  IndexedFaceSet bad = test::tetrahedron();
+  bad.corners[0] = 4;
+  CHECK(to_polygon_soup(bad).error().code == ErrorCode::kUsage);
+}

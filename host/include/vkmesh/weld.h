@@ -49,4 +49,9 @@ struct Welded {
 /// Errors: kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
 [[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
 
+/// The faces with corners of their own: the way back, after which weld() gives the same faces over the points
+/// that they use. Channels of faces follow; a soup has no place for those of points and corners. O(n) for n
+/// corners. Errors: kUsage for corners that name no point; kOutOfMemory.
+[[nodiscard]] Result<PolygonSoup> to_polygon_soup(const IndexedFaceSet& mesh);
+
 }  // namespace vkmesh
