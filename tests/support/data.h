@@ -13,4 +13,8 @@ std::filesystem::path dragon(const char* name = "dragon_vrip.ply.gz");
 /// data/cgal/: every mesh of Debian's libcgal-demo, sorted by path. Fails the test where they are missing.
 std::vector<std::filesystem::path> cgal_meshes();
 
+/// The same for tests that do long work on each: under the address sanitizer, which makes it ten times as
+/// long, every eighth.
+std::vector<std::filesystem::path> cgal_meshes_for_long_work();
+
 }  // namespace vkmesh::test
