@@ -282,6 +282,13 @@ std::string parsed_in_blocks(const std::string& content, std::size_t block_bytes
 
 const std::vector<std::size_t> kBlockSizes = {1, 13, 100, 1000};
 
+// The address sanitizer makes each of many small parses ten times as long.
+#ifdef VKMESH_ADDRESS_SANITIZER
+constexpr std::size_t kStride = 11;
+#else
+constexpr std::size_t kStride = 1;
+#endif
+
 }  // namespace
 
 TEST_CASE("PLY read in blocks is the same as read in one go", "[io][ply]") {
@@ -320,7 +327,7 @@ TEST_CASE("PLY read in blocks tells the first error of the file", "[io][ply]") {
       for (const std::size_t bytes : kBlockSizes)
         differences += parsed_in_blocks(broken, bytes) == whole ? 0 : 1;
     };
-    for (std::size_t at = body; at < content.size(); ++at) {
+    for (std::size_t at = body; at < content.size(); at += kStride) {
       compare(content.substr(0, at));
       for (const std::string with : {"", "x", "9", "\n", "-", "\xff"}) {
         std::string broken = content;
@@ -331,7 +338,7 @@ TEST_CASE("PLY read in blocks tells the first error of the file", "[io][ply]") {
       }
     }
     INFO(name_of(encoding));
-    CHECK(errors > content.size() - body);
+    CHECK(errors > (content.size() - body) / kStride);
     CHECK(differences == 0);
   }
 }
