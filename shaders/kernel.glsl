@@ -21,12 +21,19 @@ layout(local_size_x = 128) in;
   if (gl_GlobalInvocationID.x >= p.count) return
 
 // For the same reason gathers load the first eight elements of a list, which is all that most vertices have, without a
-// condition; past the end of the list they load an element again, and drop it.
+// condition; past the end of the list they load an element again, and drop it. They load what the list holds before
+// they load what that points to, so that more loads are under way at once.
 #define VKMESH_UNMASKED 8u
 #define VKMESH_CLAMPED(n, end) min(n, max(end, 1u) - 1u)
 
 vec3 load3(Floats values, uint i) { return vec3(values.at[3 * i], values.at[3 * i + 1], values.at[3 * i + 2]); }
 
 void store3(Floats values, uint i, vec3 v) { values.at[3 * i] = v.x; values.at[3 * i + 1] = v.y; values.at[3 * i + 2] = v.z; }
+
+// The area vector of the face f, corner by corner.
+vec3 face_area_vector(Floats positions, Uints corners, uint f) {
+  const uvec3 v = uvec3(corners.at[3 * f], corners.at[3 * f + 1], corners.at[3 * f + 2]);
+  return area_vector(load3(positions, v.x), load3(positions, v.y), load3(positions, v.z));
+}
 
 #endif

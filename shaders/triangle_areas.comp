@@ -7,8 +7,7 @@ VKMESH_PUSH_CONSTANTS(TrianglesParams);
 
 void main() {
   VKMESH_THREAD_INDEX(f);
-  const vec3 area = area_vector(load3(p.positions, p.corners.at[3 * f]), load3(p.positions, p.corners.at[3 * f + 1]),
-                                load3(p.positions, p.corners.at[3 * f + 2]));
+  const vec3 area = face_area_vector(p.positions, p.corners, f);
   VKMESH_SURPLUS_THREADS_LEAVE;
   store3(p.vectors, f, area);
 }

@@ -10,10 +10,11 @@ void main() {
   precise vec3 sum = vec3(0.0);
   const uint begin = p.corner_offsets.at[v];
   const uint end = p.corner_offsets.at[v + 1];
+  uint faces[VKMESH_UNMASKED];
+  for (uint k = 0; k < VKMESH_UNMASKED; ++k) faces[k] = p.corner_half_edges.at[VKMESH_CLAMPED(begin + k, end)] / 3;
   for (uint k = 0; k < VKMESH_UNMASKED; ++k) {
-    const uint c = begin + k;
-    precise vec3 more = sum + load3(p.areas, p.corner_half_edges.at[VKMESH_CLAMPED(c, end)] / 3);
-    sum = c < end ? more : sum;
+    precise vec3 more = sum + load3(p.areas, faces[k]);
+    sum = begin + k < end ? more : sum;
   }
   for (uint c = begin + VKMESH_UNMASKED; c < end; ++c) sum = sum + load3(p.areas, p.corner_half_edges.at[c] / 3);
   VKMESH_SURPLUS_THREADS_LEAVE;
