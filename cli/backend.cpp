@@ -3,7 +3,7 @@
 #include <utility>
 
 #include <vkmesh/node_neighbours.h>
-#include <vkmesh/passes/dihedral_angles.h>
+#include <vkmesh/passes/restore_volume.h>
 
 namespace vkmesh::cli {
 namespace {
@@ -17,19 +17,62 @@ class HostBackend : public Backend {
     return job_.timed("compute", [&] { return vkmesh::vertex_normals(mesh, positions, options); });
   }
 
-  Result<std::vector<float>> largest_dihedral_angles(const HalfEdgeMesh& mesh,
-                                                     std::span<const Vec3> positions) override {
-    VKMESH_TRY(DihedralAngles angles,
-               job_.timed("compute", [&] { return dihedral_angles(mesh, positions); }));
-    return std::move(angles.vertex_maximum);
+  Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh,
+                                             std::span<const Vec3> positions) override {
+    return job_.timed("compute", [&] { return vkmesh::triangle_normals(mesh, positions); });
+  }
+
+  Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) override {
+    return job_.timed("compute", [&] { return vkmesh::dihedral_angles(mesh, positions); });
+  }
+
+  Result<std::vector<VertexCurvature>> curvatures(const HalfEdgeMesh& mesh,
+                                                  std::span<const Vec3> positions) override {
+    return job_.timed("compute", [&]() -> Result<std::vector<VertexCurvature>> {
+      VKMESH_TRY(const NodeNeighbours neighbours, node_neighbours(mesh));
+      return vkmesh::curvatures(neighbours, positions);
+    });
+  }
+
+  Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
+                                           std::span<const Vec3> positions) override {
+    return job_.timed("compute", [&] { return vkmesh::surface_measures(mesh, positions); });
   }
 
   Result<std::vector<Vec3>> laplacian_smoothing(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                                const LaplacianSmoothingOptions& options) override {
+                                                const LaplacianSmoothingOptions& options,
+                                                bool keep_volume) override {
     return job_.timed("compute", [&]() -> Result<std::vector<Vec3>> {
       VKMESH_TRY(const NodeNeighbours neighbours, node_neighbours(mesh));
-      return vkmesh::laplacian_smoothing(neighbours, positions, options, job_.progress("smoothing"));
+      VKMESH_TRY(std::vector<Vec3> smoothed,
+                 vkmesh::laplacian_smoothing(neighbours, positions, options, job_.progress("smoothing")));
+      if (keep_volume) return restore_volume(mesh, positions, smoothed);
+      return smoothed;
     });
+  }
+
+  Result<std::vector<Vec3>> bilateral_smoothing(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                                const BilateralSmoothingOptions& options,
+                                                bool keep_volume) override {
+    return job_.timed("compute", [&]() -> Result<std::vector<Vec3>> {
+      VKMESH_TRY(std::vector<Vec3> smoothed,
+                 vkmesh::bilateral_smoothing(mesh, positions, options, job_.progress("smoothing")));
+      if (keep_volume) return restore_volume(mesh, positions, smoothed);
+      return smoothed;
+    });
+  }
+
+  Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                            const CollapseCostOptions& options) override {
+    return job_.timed("compute", [&]() -> Result<std::vector<float>> {
+      VKMESH_TRY(const std::vector<VertexQuadric> planes, quadrics(mesh, positions, options));
+      return vkmesh::collapse_costs(mesh, positions, planes, options);
+    });
+  }
+
+  Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                         SwapCriterion criterion) override {
+    return job_.timed("compute", [&] { return vkmesh::swap_scores(mesh, positions, criterion); });
   }
 
  private:

@@ -7,7 +7,14 @@
 #include <vector>
 
 #include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/passes/bilateral_smoothing.h>
+#include <vkmesh/passes/collapse_costs.h>
+#include <vkmesh/passes/curvatures.h>
+#include <vkmesh/passes/dihedral_angles.h>
 #include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/surface_measures.h>
+#include <vkmesh/passes/swap_scores.h>
+#include <vkmesh/passes/triangle_normals.h>
 #include <vkmesh/passes/vertex_normals.h>
 #include <vkmesh/result.h>
 #include <vkmesh/vec.h>
@@ -32,12 +39,27 @@ class Backend {
   [[nodiscard]] virtual Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
                                                                  std::span<const Vec3> positions,
                                                                  const VertexNormalsOptions& options) = 0;
-  /// DihedralAngles::vertex_maximum.
-  [[nodiscard]] virtual Result<std::vector<float>> largest_dihedral_angles(
-      const HalfEdgeMesh& mesh, std::span<const Vec3> positions) = 0;
+  [[nodiscard]] virtual Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh,
+                                                                   std::span<const Vec3> positions) = 0;
+  [[nodiscard]] virtual Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh,
+                                                               std::span<const Vec3> positions) = 0;
+  [[nodiscard]] virtual Result<std::vector<VertexCurvature>> curvatures(const HalfEdgeMesh& mesh,
+                                                                        std::span<const Vec3> positions) = 0;
+  [[nodiscard]] virtual Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
+                                                                 std::span<const Vec3> positions) = 0;
+  /// With keep_volume restore_volume() follows.
   [[nodiscard]] virtual Result<std::vector<Vec3>> laplacian_smoothing(
-      const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-      const LaplacianSmoothingOptions& options) = 0;
+      const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const LaplacianSmoothingOptions& options,
+      bool keep_volume) = 0;
+  [[nodiscard]] virtual Result<std::vector<Vec3>> bilateral_smoothing(
+      const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const BilateralSmoothingOptions& options,
+      bool keep_volume) = 0;
+  [[nodiscard]] virtual Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh,
+                                                                  std::span<const Vec3> positions,
+                                                                  const CollapseCostOptions& options) = 0;
+  [[nodiscard]] virtual Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh,
+                                                               std::span<const Vec3> positions,
+                                                               SwapCriterion criterion) = 0;
 };
 
 /// The backend that --device asks for, reported in the job. Errors: kNoDevice, kOutOfMemory.

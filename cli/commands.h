@@ -23,6 +23,7 @@ struct Program {
 void add_info(CLI::App& app, Program& program);
 void add_convert(CLI::App& app, Program& program);
 void add_normals(CLI::App& app, Program& program);
+void add_creases(CLI::App& app, Program& program);
 void add_curvature(CLI::App& app, Program& program);
 void add_smooth(CLI::App& app, Program& program);
 void add_simplify(CLI::App& app, Program& program);

@@ -64,7 +64,21 @@ Pass normals(std::string name, NormalWeights weights) {
 
 Pass smoothing(std::string name, LaplacianSmoothingOptions options) {
   return pass(std::move(name), [options](Backend& b, const Input& in) {
-    return b.laplacian_smoothing(in.mesh, in.positions, options);
+    return b.laplacian_smoothing(in.mesh, in.positions, options, false);
+  });
+}
+
+Pass collapse_costs(std::string name, CollapsePlacement placement) {
+  return pass(std::move(name), [placement](Backend& b, const Input& in) {
+    CollapseCostOptions options = unit_frame(in.positions);
+    options.placement = placement;
+    return b.collapse_costs(in.mesh, in.positions, options);
+  });
+}
+
+Pass swap_scores(std::string name, SwapCriterion criterion) {
+  return pass(std::move(name), [criterion](Backend& b, const Input& in) {
+    return b.swap_scores(in.mesh, in.positions, criterion);
   });
 }
 
@@ -73,8 +87,26 @@ const std::vector<Pass>& passes() {
       normals("vertex-normals", NormalWeights::kArea),
       normals("vertex-normals-by-angle", NormalWeights::kAngle),
       normals("vertex-normals-uniform", NormalWeights::kUniform),
+      pass("triangle-normals",
+           [](Backend& b, const Input& in) { return b.triangle_normals(in.mesh, in.positions); }),
       pass("dihedral-angles",
-           [](Backend& b, const Input& in) { return b.largest_dihedral_angles(in.mesh, in.positions); }),
+           [](Backend& b, const Input& in) -> Result<std::vector<float>> {
+             VKMESH_TRY(DihedralAngles angles, b.dihedral_angles(in.mesh, in.positions));
+             // Of half-edges, then of vertices.
+             angles.half_edge.insert(angles.half_edge.end(), angles.vertex_maximum.begin(),
+                                     angles.vertex_maximum.end());
+             return std::move(angles.half_edge);
+           }),
+      pass("curvatures", [](Backend& b, const Input& in) { return b.curvatures(in.mesh, in.positions); }),
+      pass("surface-measures",
+           [](Backend& b, const Input& in) -> Result<std::vector<SurfaceMeasures>> {
+             VKMESH_TRY(const SurfaceMeasures measures, b.surface_measures(in.mesh, in.positions));
+             return std::vector{measures};
+           }),
+      collapse_costs("collapse-costs", CollapsePlacement::kOptimal),
+      collapse_costs("collapse-costs-end", CollapsePlacement::kEndpoint),
+      swap_scores("swap-scores", SwapCriterion::kMinAngle),
+      swap_scores("swap-scores-by-quality", SwapCriterion::kAspectRatio),
       smoothing("laplacian-smoothing", {}),
       smoothing("taubin-smoothing", {.mu = -0.53f}),
       smoothing("cotangent-smoothing", {.weights = SmoothingWeights::kCotangent}),
@@ -82,6 +114,19 @@ const std::vector<Pass>& passes() {
                                                     .boundary_along_itself = true,
                                                     .weights = SmoothingWeights::kCotangent,
                                                     .mu = -0.53f}),
+      pass("laplacian-smoothing-keeping-volume",
+           [](Backend& b, const Input& in) {
+             return b.laplacian_smoothing(in.mesh, in.positions, {.iterations = 3},
+                                          in.mesh.boundary_half_edge_count() == 0);
+           }),
+      pass("bilateral-smoothing",
+           [](Backend& b, const Input& in) {
+             const double length = mean_edge_length(in.mesh, in.positions);
+             return b.bilateral_smoothing(
+                 in.mesh, in.positions,
+                 {.spatial = static_cast<float>(length), .influence = static_cast<float>(0.3 * length)},
+                 false);
+           }),
   };
   return all;
 }

@@ -73,8 +73,8 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   DecimateOptions decimation;
   decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
   if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
-  if (options.placement == "midpoint") decimation.placement = DecimatePlacement::kMidpoint;
-  if (options.placement == "endpoint") decimation.placement = DecimatePlacement::kEndpoint;
+  if (options.placement == "midpoint") decimation.placement = CollapsePlacement::kMidpoint;
+  if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
   if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
   if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
   decimation.target_faces = options.faces;
@@ -92,7 +92,7 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   output.points = std::move(decimated.positions);
   output.corners.assign(decimated.mesh.origins().begin(), decimated.mesh.origins().end());
   if (!input.point_channels.empty() && decimation.operation == DecimateOperation::kEdgeCollapse &&
-      decimation.placement != DecimatePlacement::kEndpoint)
+      decimation.placement != CollapsePlacement::kEndpoint)
     job.note("points were moved: each has the attributes of a point that it stands for");
   output.point_channels = gather(input.point_channels, decimated.source_vertex);
   const double ratio =

@@ -4,11 +4,18 @@
 #include <cstdio>
 #include <utility>
 
+#include <vkmesh/engine/bilateral_smoothing.h>
+#include <vkmesh/engine/collapse_costs.h>
 #include <vkmesh/engine/context.h>
+#include <vkmesh/engine/curvatures.h>
 #include <vkmesh/engine/device_mesh.h>
 #include <vkmesh/engine/dihedral_angles.h>
 #include <vkmesh/engine/laplacian_smoothing.h>
 #include <vkmesh/engine/recorder.h>
+#include <vkmesh/engine/restore_volume.h>
+#include <vkmesh/engine/surface_measures.h>
+#include <vkmesh/engine/swap_scores.h>
+#include <vkmesh/engine/triangle_normals.h>
 #include <vkmesh/engine/vertex_normals.h>
 
 #include "backend.h"
@@ -27,16 +34,72 @@ class VulkanBackend : public Backend {
     return job_.timed("download", [&] { return device.download_vertex_normals(); });
   }
 
-  Result<std::vector<float>> largest_dihedral_angles(const HalfEdgeMesh& mesh,
-                                                     std::span<const Vec3> positions) override {
+  Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh,
+                                             std::span<const Vec3> positions) override {
+    VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.triangle_normals = true}));
+    VKMESH_CHECK(run([&](Recorder& recorder) { return record_triangle_normals(recorder, device); }));
+    return job_.timed("download", [&] { return device.download_triangle_normals(); });
+  }
+
+  Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) override {
     VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.dihedral_angles = true}));
     VKMESH_CHECK(run([&](Recorder& recorder) { return record_dihedral_angles(recorder, device); }));
-    return job_.timed("download", [&] { return device.download_vertex_maxima(); });
+    return job_.timed("download", [&]() -> Result<DihedralAngles> {
+      DihedralAngles angles;
+      VKMESH_TRY(angles.half_edge, device.download_half_edge_angles());
+      VKMESH_TRY(angles.vertex_maximum, device.download_vertex_maxima());
+      return angles;
+    });
+  }
+
+  Result<std::vector<VertexCurvature>> curvatures(const HalfEdgeMesh& mesh,
+                                                  std::span<const Vec3> positions) override {
+    VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.curvatures = true}));
+    VKMESH_CHECK(run([&](Recorder& recorder) { return record_curvatures(recorder, device); }));
+    return job_.timed("download", [&] { return device.download_curvatures(); });
+  }
+
+  Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
+                                           std::span<const Vec3> positions) override {
+    VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.surface_measures = true}));
+    VKMESH_CHECK(run([&](Recorder& recorder) { return record_surface_measures(recorder, device); }));
+    return job_.timed("download", [&] { return device.download_surface_measures(); });
+  }
+
+  Result<std::vector<Vec3>> bilateral_smoothing(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                                const BilateralSmoothingOptions& options,
+                                                bool keep_volume) override {
+    VKMESH_TRY(DeviceMesh device,
+               upload(mesh, positions, {.bilateral_smoothing = true, .restore_volume = keep_volume}));
+    VKMESH_TRY(const NearbyFaces nearby, job_.timed("upload", [&] {
+      return NearbyFaces::create(*context_, mesh, positions, options);
+    }));
+    if (keep_volume) VKMESH_CHECK(run([&](Recorder& recorder) { return record_volume(recorder, device); }));
+    VKMESH_CHECK(
+        run([&](Recorder& recorder) { return record_bilateral_smoothing(recorder, device, nearby); }));
+    return restored(device, keep_volume);
+  }
+
+  Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                            const CollapseCostOptions& options) override {
+    VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.collapse_costs = true}));
+    VKMESH_CHECK(run([&](Recorder& recorder) { return record_collapse_costs(recorder, device, options); }));
+    return job_.timed("download", [&] { return device.download_collapse_costs(); });
+  }
+
+  Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                         SwapCriterion criterion) override {
+    VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.swap_scores = true}));
+    VKMESH_CHECK(run([&](Recorder& recorder) { return record_swap_scores(recorder, device, criterion); }));
+    return job_.timed("download", [&] { return device.download_swap_scores(); });
   }
 
   Result<std::vector<Vec3>> laplacian_smoothing(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                                const LaplacianSmoothingOptions& options) override {
-    VKMESH_TRY(DeviceMesh device, upload(mesh, positions, {.laplacian_smoothing = true}));
+                                                const LaplacianSmoothingOptions& options,
+                                                bool keep_volume) override {
+    VKMESH_TRY(DeviceMesh device,
+               upload(mesh, positions, {.laplacian_smoothing = true, .restore_volume = keep_volume}));
+    if (keep_volume) VKMESH_CHECK(run([&](Recorder& recorder) { return record_volume(recorder, device); }));
     const Progress progress = job_.progress("smoothing");
     // In portions of a fraction of a second, so that progress shows and an interrupt is heard.
     LaplacianSmoothingOptions portion = options;
@@ -51,13 +114,20 @@ class VulkanBackend : public Backend {
       left -= portion.iterations;
       if (milliseconds < 100) portion.iterations *= 2;
     }
-    return job_.timed("download", [&] { return device.download_positions(); });
+    return restored(device, keep_volume);
   }
 
  private:
   Result<DeviceMesh> upload(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                             const MeshPasses& passes) {
     return job_.timed("upload", [&] { return DeviceMesh::create(*context_, mesh, positions, passes); });
+  }
+
+  /// The positions in the end.
+  Result<std::vector<Vec3>> restored(DeviceMesh& device, bool keep_volume) {
+    if (keep_volume)
+      VKMESH_CHECK(run([&](Recorder& recorder) { return record_restore_volume(recorder, device); }));
+    return job_.timed("download", [&] { return device.download_positions(); });
   }
 
   /// Runs what `record` records, books the device's time and returns it in milliseconds.

@@ -68,6 +68,23 @@ float root(float x) {
              : 0.0;
 }
 
+float cube_root(float x) {
+  uint b = floatBitsToUint(x);
+  uint exponent = b >> 23;
+  float m = uintBitsToFloat((b & 0x007fffffu) | ((127u + (exponent + 2u) % 3u) << 23));
+  precise float y = uintBitsToFloat(VKMESH_RECIPROCAL_CUBE_ROOT_SEED - floatBitsToUint(m) / 3u);
+  precise float third = VKMESH_THIRD * m;
+  for (int i = 0; i < 4; ++i) y = y * (VKMESH_FOUR_THIRDS - third * ((y * y) * y));
+  precise float square = y * y;
+  precise float z = m * square;
+  precise float s = z * z;
+  precise float r = residual(m, s, z) + residual(s, z, z) * z;
+  precise float refined = z + (VKMESH_THIRD * square) * r;
+  return exponent - 1u < 254u
+             ? uintBitsToFloat(floatBitsToUint(refined) + (((exponent + 2u) / 3u) << 23) - (43u << 23))
+             : 0.0;
+}
+
 float first_quadrant_angle(float y, float x) {
   bool steep = y > x;
   precise float t = (steep ? x : y) * reciprocal(steep ? y : x);
@@ -162,6 +179,16 @@ float angle_between(vec3 a, vec3 b) {
   const float along = root(squared_length(zero_below(sum, VKMESH_TINY_LENGTH)));
   precise float angle = 2.0 * first_quadrant_angle(apart, along);
   return angle;
+}
+
+float dihedral_angle(vec3 left, vec3 right, vec3 along) {
+  precise vec3 c = vec3(left.y * right.z - left.z * right.y, left.z * right.x - left.x * right.z,
+                        left.x * right.y - left.y * right.x);
+  c = zero_below(c, VKMESH_TINY_DIRECTION);
+  vec3 e = zero_below(along, VKMESH_TINY_LENGTH);
+  float angle = angle_between(left, right);
+  precise float side = (c.x * e.x + c.y * e.y) + c.z * e.z;
+  return side < 0.0 ? -angle : angle;
 }
 
 float vector_length(vec3 v) {

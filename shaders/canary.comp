@@ -39,5 +39,7 @@ void main() {
   store_result(i, 18, vector_length(b));
   const float twice_area = vector_length(area_vector(a, b, c));
   store_result(i, 19, cotangent(corner_product(a, b, c), twice_area));
+  store_result(i, 21, cube_root(y));
+  store_result(i, 22, dihedral_angle(unit_vector(a), unit_vector(b), c));
   store_result(i, 20, corner_angle(corner_product(a, b, c), twice_area));
 }

@@ -78,7 +78,9 @@ struct LaplacianSmoothingParams {
 struct DihedralAnglesParams {
   VKMESH_UINT first;
   VKMESH_UINT count;
-  VKMESH_FLOATS normals;  ///< 3 a face, from triangle_normals
+  VKMESH_FLOATS positions;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_FLOATS normals;    ///< 3 a face, from triangle_normals
   VKMESH_UINTS twins;
   VKMESH_FLOATS angles;  ///< 1 a half-edge: written
 };
@@ -104,6 +106,46 @@ struct CurvaturesParams {
   VKMESH_FLOATS curvatures;    ///< 4 a vertex, as VertexCurvature: written
 };
 
+/// bilateral_faces.comp: i is a face, by its place in the grid.
+struct BilateralFacesParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_UINTS face_order;  ///< the face at each place
+  VKMESH_FLOATS faces;      ///< 4 a place, centroid and area: written
+  VKMESH_FLOAT spatial;
+  VKMESH_UINT unused;
+};
+
+/// bilateral_normals.comp: i is a face, by its place in the grid.
+struct BilateralNormalsParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS mollified;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_UINTS face_order;  ///< the face at each place
+  VKMESH_FLOATS normals;    ///< 3 a place: written
+};
+
+/// bilateral_mollify.comp, bilateral_move.comp: i is a vertex, by its place in the grid.
+struct BilateralSumParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;     ///< 3 a vertex
+  VKMESH_UINTS vertex_order;   ///< the vertex at each place
+  VKMESH_UINTS cells;          ///< the cell of each place
+  VKMESH_UINTS range_offsets;  ///< cells + 1
+  VKMESH_UINTS ranges;         ///< 2 a range: the first place of its faces, and the place after its last
+  VKMESH_FLOATS faces;         ///< 4 a place, from bilateral_faces
+  VKMESH_FLOATS normals;       ///< 3 a place, from bilateral_normals; not read by bilateral_mollify
+  VKMESH_FLOATS target;        ///< 3 a vertex: written
+  VKMESH_FLOAT spatial;        ///< σ_f
+  VKMESH_FLOAT per_spatial;    ///< 1 / σ_f
+  VKMESH_FLOAT spatial_over_influence;  ///< σ_f / σ_g
+  VKMESH_UINT unused;
+};
+
 /// bounds_blocks.comp: i is a block of VKMESH_SUM_BLOCK elements.
 struct BoundsBlocksParams {
   VKMESH_UINT first;
@@ -126,6 +168,66 @@ struct FaceMeasuresParams {
   VKMESH_UINT unused;
 };
 
+/// quadrics.comp: i is a vertex.
+struct QuadricsParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;      ///< 3 a vertex
+  VKMESH_UINTS corners;         ///< 3 a face
+  VKMESH_UINTS twins;           ///< 1 a half-edge
+  VKMESH_UINTS corner_offsets;  ///< vertices + 1
+  VKMESH_UINTS corner_half_edges;
+  VKMESH_FLOATS quadrics;  ///< 6 a vertex: written
+  VKMESH_FLOAT centre_x;
+  VKMESH_FLOAT centre_y;
+  VKMESH_FLOAT centre_z;
+  VKMESH_FLOAT scale;
+  VKMESH_FLOAT boundary_weight;
+  VKMESH_UINT unused;
+};
+
+/// collapse_costs.comp: i is a half-edge.
+struct CollapseCostsParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_UINTS twins;       ///< 1 a half-edge
+  VKMESH_FLOATS quadrics;   ///< 6 a vertex
+  VKMESH_FLOATS costs;      ///< 1 a half-edge: written
+  VKMESH_FLOAT centre_x;
+  VKMESH_FLOAT centre_y;
+  VKMESH_FLOAT centre_z;
+  VKMESH_FLOAT scale;
+  VKMESH_UINT placement;  ///< CollapsePlacement
+  VKMESH_UINT unused;
+};
+#define VKMESH_PLACEMENT_OPTIMAL 0
+#define VKMESH_PLACEMENT_ENDPOINT 2
+
+/// swap_scores.comp: i is a half-edge.
+struct SwapScoresParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;  ///< 3 a vertex
+  VKMESH_UINTS corners;     ///< 3 a face
+  VKMESH_UINTS twins;       ///< 1 a half-edge
+  VKMESH_FLOATS scores;     ///< 1 a half-edge: written
+  VKMESH_UINT criterion;    ///< SwapCriterion
+  VKMESH_UINT unused;
+};
+#define VKMESH_SWAP_BY_ANGLE 0
+#define VKMESH_NO_SWAP -4.0f
+
+/// restore_volume.comp: i is a vertex.
+struct RestoreVolumeParams {
+  VKMESH_UINT first;
+  VKMESH_UINT count;
+  VKMESH_FLOATS positions;  ///< 3 a vertex: read and written
+  VKMESH_FLOATS before;     ///< RawMeasures
+  VKMESH_FLOATS after;      ///< RawMeasures
+};
+
 /// sum_blocks.comp: i is a block of VKMESH_SUM_BLOCK elements.
 struct SumBlocksParams {
   VKMESH_UINT first;
@@ -144,7 +246,7 @@ struct CanaryParams {
   VKMESH_FLOATS results;  ///< VKMESH_CANARY_RESULTS a case: written
 };
 #define VKMESH_CANARY_INPUTS 9
-#define VKMESH_CANARY_RESULTS 21
+#define VKMESH_CANARY_RESULTS 23
 
 #ifdef __cplusplus
 }  // namespace vkmesh::kernels

@@ -1,14 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The largest angle of the edges around each vertex.
+// The largest magnitude of the angles of the edges around each vertex.
 #include "kernel.glsl"
 
 VKMESH_PUSH_CONSTANTS(VertexMaximaParams);
 
 // The larger angle of a half-edge and of the one before it, which together meet every edge of a vertex.
 float larger_around(uint h) {
-  const float a = p.angles.at[h];
-  const float b = p.angles.at[h % 3 == 0 ? h + 2 : h - 1];
+  const float a = abs(p.angles.at[h]);
+  const float b = abs(p.angles.at[h % 3 == 0 ? h + 2 : h - 1]);
   return a > b ? a : b;
 }
 

@@ -24,7 +24,7 @@ constexpr std::array<const char*, VKMESH_CANARY_RESULTS> kNames = {
     "squared_length", "area_vector", "area_vector",     "area_vector",   "unit_vector",
     "unit_vector",    "unit_vector", "angle_between",   "a + b * c",     "reciprocal",
     "float of uint",  "arccosine",   "exponential",     "vector_length", "cotangent",
-    "corner_angle"};
+    "corner_angle",   "cube_root",   "dihedral_angle"};
 
 /// Values of either sign and of every magnitude in [2^-60, 2^50), some equal, some one bit apart.
 std::vector<float> make_inputs() {
@@ -74,7 +74,9 @@ std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t
           exponential(a.y),
           vector_length(b),
           cotangent(product, twice_area),
-          corner_angle(product, twice_area)};
+          corner_angle(product, twice_area),
+          cube_root(y),
+          dihedral_angle(unit, unit_vector(b), c)};
 }
 
 std::string hexadecimal(float value) {

@@ -12,8 +12,21 @@ namespace {
 /// Kernels load one element even of an empty list (of faces: its corners), and drop it.
 constexpr std::uint64_t kOneElement = 1;
 
-bool needs_neighbours(const MeshPasses& passes) {
-  return passes.laplacian_smoothing || passes.curvatures;
+bool needs_neighbours(const MeshPasses& p) {
+  return p.laplacian_smoothing || p.curvatures;
+}
+bool needs_vertex_corners(const MeshPasses& p) {
+  return p.vertex_normals || p.dihedral_angles || p.collapse_costs;
+}
+bool needs_twins(const MeshPasses& p) {
+  return p.dihedral_angles || p.collapse_costs || p.swap_scores;
+}
+bool needs_measures(const MeshPasses& p) {
+  return p.surface_measures || p.restore_volume;
+}
+bool needs_corners(const MeshPasses& p) {
+  return needs_vertex_corners(p) || needs_twins(p) || needs_measures(p) || p.triangle_normals ||
+         p.bilateral_smoothing;
 }
 
 /// Bytes of each buffer of a DeviceMesh; 0 for those that no pass asks for.
@@ -21,25 +34,27 @@ struct Sizes {
   std::uint64_t positions = 0, smoothed_positions = 0, corners = 0, twins = 0, neighbour_offsets = 0,
                 neighbour_ids = 0, boundary_bits = 0, locked_bits = 0, corner_offsets = 0,
                 corner_half_edges = 0, face_vectors = 0, triangle_normals = 0, vertex_normals = 0,
-                half_edge_angles = 0, vertex_maxima = 0, curvatures = 0, surface_measures = 0, block_sums = 0,
+                half_edge_angles = 0, vertex_maxima = 0, curvatures = 0, surface_measures = 0,
+                volume_before = 0, quadrics = 0, collapse_costs = 0, swap_scores = 0, block_sums = 0,
                 more_block_sums = 0;
 
   Sizes(const HalfEdgeMesh& mesh, const MeshPasses& passes, std::uint64_t directed_edges) {
     const std::uint64_t vertices = mesh.vertex_count(), half_edges = mesh.half_edge_count();
+    const std::uint64_t faces = std::max<std::uint64_t>(mesh.face_count(), kOneElement);
+    const std::uint64_t per_half_edge = 4 * std::max(half_edges, 3 * kOneElement);
     positions = 12 * vertices;
-    if (passes.laplacian_smoothing) {
-      smoothed_positions = positions;
-      locked_bits = 4 * ((vertices + 31) / 32);
+    if (needs_corners(passes)) corners = per_half_edge;
+    if (needs_twins(passes)) twins = 4 * half_edges;
+    if (needs_vertex_corners(passes)) {
+      corner_offsets = 4 * (vertices + 1);
+      corner_half_edges = 4 * std::max(half_edges, kOneElement);
     }
-    if (passes.curvatures) curvatures = 16 * vertices;
     if (needs_neighbours(passes)) {
       neighbour_offsets = 4 * (vertices + 1);
       neighbour_ids = 4 * std::max(directed_edges, kOneElement);
       boundary_bits = 4 * ((vertices + 31) / 32);
     }
-    const std::uint64_t face_bytes = 12 * std::max<std::uint64_t>(mesh.face_count(), kOneElement);
-    if (passes.surface_measures) {
-      corners = 4 * std::max(half_edges, 3 * kOneElement);
+    if (needs_measures(passes)) {
       surface_measures = sizeof(RawMeasures);
       // The larger of bounds and sums; the next level takes a 64th.
       const std::uint64_t blocks =
@@ -47,29 +62,32 @@ struct Sizes {
       block_sums = 24 * blocks;
       more_block_sums = 24 * (blocks / VKMESH_SUM_BLOCK + kOneElement);
     }
-    if (passes.triangle_normals) {
-      corners = 4 * std::max(half_edges, 3 * kOneElement);
-      triangle_normals = face_bytes;
+    if (passes.laplacian_smoothing) {
+      smoothed_positions = positions;
+      locked_bits = 4 * ((vertices + 31) / 32);
     }
-    if (passes.vertex_normals || passes.dihedral_angles) {
-      corners = 4 * std::max(half_edges, 3 * kOneElement);
-      corner_offsets = 4 * (vertices + 1);
-      corner_half_edges = 4 * std::max(half_edges, kOneElement);
-      face_vectors = face_bytes;
-    }
+    if (passes.vertex_normals || passes.dihedral_angles) face_vectors = 12 * faces;
+    if (passes.triangle_normals) triangle_normals = 12 * faces;
     if (passes.vertex_normals) vertex_normals = positions;
     if (passes.dihedral_angles) {
-      twins = 4 * half_edges;
-      half_edge_angles = 4 * std::max<std::uint64_t>(half_edges, 3 * kOneElement);
+      half_edge_angles = per_half_edge;
       vertex_maxima = 4 * vertices;
     }
+    if (passes.curvatures) curvatures = 16 * vertices;
+    if (passes.restore_volume) volume_before = sizeof(RawMeasures);
+    if (passes.collapse_costs) {
+      quadrics = 24 * vertices;
+      collapse_costs = per_half_edge;
+    }
+    if (passes.swap_scores) swap_scores = per_half_edge;
   }
 
   [[nodiscard]] std::uint64_t total() const {
     return positions + smoothed_positions + corners + twins + neighbour_offsets + neighbour_ids +
            boundary_bits + locked_bits + corner_offsets + corner_half_edges + face_vectors +
            triangle_normals + vertex_normals + half_edge_angles + vertex_maxima + curvatures +
-           surface_measures + block_sums + more_block_sums;
+           surface_measures + volume_before + quadrics + collapse_costs + swap_scores + block_sums +
+           more_block_sums;
   }
 };
 
@@ -114,6 +132,7 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
     DeviceMesh result;
     result.vertices_ = static_cast<std::uint32_t>(mesh.vertex_count());
     result.faces_ = static_cast<std::uint32_t>(mesh.face_count());
+    result.closed_ = mesh.boundary_half_edge_count() == 0;
     result.passes_ = passes;
 
     NodeNeighbours neighbours;
@@ -121,7 +140,7 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
       VKMESH_TRY(neighbours, node_neighbours(mesh));
     }
     VertexCorners corners;
-    if (passes.vertex_normals || passes.dihedral_angles) {
+    if (needs_vertex_corners(passes)) {
       VKMESH_TRY(corners, vertex_corners(mesh));
     }
     const Sizes bytes(mesh, passes, neighbours.ids.size());
@@ -147,6 +166,10 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
     VKMESH_CHECK(make(context, result.vertex_maxima_, bytes.vertex_maxima, "vertex maxima"));
     VKMESH_CHECK(make(context, result.curvatures_, bytes.curvatures, "curvatures"));
     VKMESH_CHECK(make(context, result.surface_measures_, bytes.surface_measures, "surface measures"));
+    VKMESH_CHECK(make(context, result.volume_before_, bytes.volume_before, "volume before"));
+    VKMESH_CHECK(make(context, result.quadrics_, bytes.quadrics, "quadrics"));
+    VKMESH_CHECK(make(context, result.collapse_costs_, bytes.collapse_costs, "collapse costs"));
+    VKMESH_CHECK(make(context, result.swap_scores_, bytes.swap_scores, "swap scores"));
     VKMESH_CHECK(make(context, result.block_sums_, bytes.block_sums, "block sums"));
     VKMESH_CHECK(make(context, result.more_block_sums_, bytes.more_block_sums, "more block sums"));
     return result;
@@ -202,6 +225,18 @@ Result<SurfaceMeasures> DeviceMesh::download_surface_measures() const {
 
 Result<std::vector<float>> DeviceMesh::download_vertex_maxima() const {
   return values_of<float>(vertex_maxima_, vertices_, passes_.dihedral_angles, "dihedral_angles");
+}
+
+Result<std::vector<VertexQuadric>> DeviceMesh::download_quadrics() const {
+  return values_of<VertexQuadric>(quadrics_, vertices_, passes_.collapse_costs, "collapse_costs");
+}
+
+Result<std::vector<float>> DeviceMesh::download_collapse_costs() const {
+  return values_of<float>(collapse_costs_, half_edge_count(), passes_.collapse_costs, "collapse_costs");
+}
+
+Result<std::vector<float>> DeviceMesh::download_swap_scores() const {
+  return values_of<float>(swap_scores_, half_edge_count(), passes_.swap_scores, "swap_scores");
 }
 
 }  // namespace vkmesh

@@ -14,11 +14,14 @@ Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh) {
       detail::record_face_vectors(recorder, mesh, detail::triangle_normals_kernel(), mesh.face_vectors()));
 
   kernels::DihedralAnglesParams of_half_edges{};
+  of_half_edges.positions = mesh.positions().address();
+  of_half_edges.corners = mesh.corners().address();
   of_half_edges.normals = mesh.face_vectors().address();
   of_half_edges.twins = mesh.twins().address();
   of_half_edges.angles = mesh.half_edge_angles().address();
   VKMESH_CHECK(recorder.dispatch(*angles, of_half_edges, mesh.half_edge_count(),
-                                 {&mesh.face_vectors(), &mesh.twins()}, {&mesh.half_edge_angles()}));
+                                 {&mesh.positions(), &mesh.corners(), &mesh.face_vectors(), &mesh.twins()},
+                                 {&mesh.half_edge_angles()}));
 
   kernels::VertexMaximaParams of_vertices{};
   of_vertices.angles = mesh.half_edge_angles().address();

@@ -7,12 +7,16 @@
 #include <catch2/catch.hpp>
 
 #include <vkmesh/consolidate.h>
+#include <vkmesh/engine/bilateral_smoothing.h>
+#include <vkmesh/engine/collapse_costs.h>
 #include <vkmesh/engine/curvatures.h>
 #include <vkmesh/engine/device_mesh.h>
 #include <vkmesh/engine/dihedral_angles.h>
 #include <vkmesh/engine/laplacian_smoothing.h>
 #include <vkmesh/engine/recorder.h>
+#include <vkmesh/engine/restore_volume.h>
 #include <vkmesh/engine/surface_measures.h>
+#include <vkmesh/engine/swap_scores.h>
 #include <vkmesh/engine/triangle_normals.h>
 #include <vkmesh/engine/vertex_normals.h>
 #include <vkmesh/io/mesh_io.h>
@@ -34,7 +38,11 @@ constexpr MeshPasses kAllPasses = {.vertex_normals = true,
                                    .dihedral_angles = true,
                                    .triangle_normals = true,
                                    .curvatures = true,
-                                   .surface_measures = true};
+                                   .surface_measures = true,
+                                   .bilateral_smoothing = true,
+                                   .restore_volume = true,
+                                   .collapse_costs = true,
+                                   .swap_scores = true};
 
 // The number of places where two arrays differ in any bit, plus the difference in their lengths.
 std::size_t differences(std::span<const float> a, std::span<const float> b) {
@@ -69,6 +77,69 @@ DeviceMesh run(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, Record
   return device;
 }
 
+// The first fills of the queues.
+void check_exact_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> points) {
+  for (const CollapsePlacement placement :
+       {CollapsePlacement::kOptimal, CollapsePlacement::kMidpoint, CollapsePlacement::kEndpoint}) {
+    CollapseCostOptions options = unit_frame(points);
+    options.placement = placement;
+    options.boundary_weight = 30.0f;
+    const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
+      return record_collapse_costs(recorder, on_device, options);
+    });
+    const auto found = require(device.download_quadrics()), wanted = require(quadrics(mesh, points, options));
+    CHECK(differences(std::span(found.empty() ? nullptr : found[0].data(), 6 * found.size()),
+                      std::span(wanted.empty() ? nullptr : wanted[0].data(), 6 * wanted.size())) == 0);
+    CHECK(differences(require(device.download_collapse_costs()),
+                      require(collapse_costs(mesh, points, wanted, options))) == 0);
+  }
+  for (const SwapCriterion criterion : {SwapCriterion::kMinAngle, SwapCriterion::kAspectRatio}) {
+    const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
+      return record_swap_scores(recorder, on_device, criterion);
+    });
+    CHECK(differences(require(device.download_swap_scores()),
+                      require(swap_scores(mesh, points, criterion))) == 0);
+  }
+}
+
+// Smoothing that takes the volume away, and getting it back, in one submission.
+void check_exact_volume(const HalfEdgeMesh& mesh, std::span<const Vec3> points) {
+  const LaplacianSmoothingOptions options{.lambda = 0.8f, .iterations = 3};
+  const auto smoothed = require(laplacian_smoothing(require(node_neighbours(mesh)), points, options));
+  const auto wanted = restore_volume(mesh, points, smoothed);
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, points, kAllPasses));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  const auto measured = record_volume(recorder, device);
+  REQUIRE(measured.has_value() == wanted.has_value());
+  if (!wanted) {
+    CHECK(measured.error().code == wanted.error().code);
+    CHECK(record_restore_volume(recorder, device).error().code == wanted.error().code);
+    return;
+  }
+  require_done(record_laplacian_smoothing(recorder, device, options));
+  require_done(record_restore_volume(recorder, device));
+  require_done(recorder.submit_and_wait());
+  CHECK(differences(require(device.download_positions()), *wanted) == 0);
+}
+
+// With σ_f of so many mean edge lengths.
+void check_exact_bilateral(const HalfEdgeMesh& mesh, std::span<const Vec3> points, double widths) {
+  const double edge = mean_edge_length(mesh, points);
+  const BilateralSmoothingOptions options{.spatial = static_cast<float>(widths * edge),
+                                          .influence = static_cast<float>(0.3 * edge)};
+  const auto wanted = bilateral_smoothing(mesh, points, options);
+  const auto nearby = NearbyFaces::create(test::test_context(), mesh, points, options);
+  REQUIRE(nearby.has_value() == wanted.has_value());
+  if (!wanted) {
+    CHECK(nearby.error().code == wanted.error().code);
+    return;
+  }
+  const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
+    return record_bilateral_smoothing(recorder, on_device, *nearby);
+  });
+  CHECK(differences(require(device.download_positions()), *wanted) == 0);
+}
+
 // Runs all passes on both sides and compares every output.
 void check_exact(const IndexedFaceSet& set) {
   const HalfEdgeMesh mesh = test::half_edges(set);
@@ -80,6 +151,9 @@ void check_exact(const IndexedFaceSet& set) {
     CHECK(differences(require(device.download_vertex_normals()),
                       require(vertex_normals(mesh, set.points, {.weights = weights}))) == 0);
   }
+  check_exact_costs(mesh, set.points);
+  check_exact_volume(mesh, set.points);
+  check_exact_bilateral(mesh, set.points, 1.0);
   const NodeNeighbours neighbours = require(node_neighbours(mesh));
   const auto bent = require(run(mesh, set.points, record_curvatures).download_curvatures());
   const auto expected = require(curvatures(neighbours, set.points));
@@ -188,6 +262,15 @@ TEST_CASE("passes equal their references bit for bit on the dragon") {
   check_exact(set);
 }
 
+TEST_CASE("bilateral smoothing equals its reference with widths from a part of an edge to the whole mesh") {
+  for (IndexedFaceSet set : {test::icosphere(3), test::grid(20, 13), test::torus(30, 20)}) {
+    test::jitter(set, 0.05f, 3);
+    set.points.push_back(Vec3(100.0f, 0.0f, 0.0f));  // Isolated, and far away.
+    for (const double widths : {0.02, 0.5, 3.0, 40.0})
+      check_exact_bilateral(test::half_edges(set), set.points, widths);
+  }
+}
+
 TEST_CASE("normals after smoothing in one submission are those of the smoothed positions") {
   IndexedFaceSet set = test::icosphere(3);
   test::jitter(set, 0.05f, 1);
@@ -212,11 +295,23 @@ TEST_CASE("smoothing on the device: λ out of range and passes that the mesh was
   CHECK(record_curvatures(recorder, device).error().code == ErrorCode::kUsage);
   CHECK(record_surface_measures(recorder, device).error().code == ErrorCode::kUsage);
   CHECK(record_triangle_normals(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_collapse_costs(recorder, device, {}).error().code == ErrorCode::kUsage);
+  CHECK(record_swap_scores(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_volume(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_restore_volume(recorder, device).error().code == ErrorCode::kUsage);
+  const NearbyFaces nearby = require(NearbyFaces::create(test::test_context(), test::half_edges(set),
+                                                         set.points, {.spatial = 0.5f, .influence = 0.1f}));
+  CHECK(record_bilateral_smoothing(recorder, device, nearby).error().code == ErrorCode::kUsage);
   CHECK(device.download_triangle_normals().error().code == ErrorCode::kUsage);
   DeviceMesh all =
       require(DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, kAllPasses));
   CHECK(record_laplacian_smoothing(recorder, all, {.lambda = 1.5f}).error().code == ErrorCode::kUsage);
   CHECK(record_laplacian_smoothing(recorder, all, {.mu = 0.5f}).error().code == ErrorCode::kUsage);
+  CHECK(record_collapse_costs(recorder, all, {.scale = 0.0f}).error().code == ErrorCode::kUsage);
+  const NearbyFaces of_another =
+      require(NearbyFaces::create(test::test_context(), test::half_edges(test::tetrahedron()),
+                                  test::tetrahedron().points, {.spatial = 0.5f, .influence = 0.1f}));
+  CHECK(record_bilateral_smoothing(recorder, all, of_another).error().code == ErrorCode::kUsage);
   const std::vector<std::uint32_t> locks(1, 0u), too_many(2, 0u);
   CHECK(record_laplacian_smoothing(recorder, all, {.locked = locks}).error().code == ErrorCode::kUsage);
   CHECK(all.upload_locks(too_many).error().code == ErrorCode::kUsage);

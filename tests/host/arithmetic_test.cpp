@@ -72,6 +72,45 @@ TEST_CASE("arccosine and exponential on every float", "[.long]") {
   check_errors(worst_errors(1));
 }
 
+// Over the floats of which the bits are multiples of `stride`.
+double worst_cube_root(float low, float high, std::uint32_t stride) {
+  double worst = 0;
+  sweep(low, high, stride, [&](float x) {
+    worst = std::max(worst, ulps(cube_root(x), std::cbrt(static_cast<long double>(x))));
+  });
+  return worst;
+}
+
+// Of the arctangent of y, as the angle of (1, y).
+double worst_arctangent(float low, float high, std::uint32_t stride) {
+  double worst = 0;
+  sweep(low, high, stride, [&](float y) {
+    worst = std::max(worst, ulps(first_quadrant_angle(y, 1.0f), std::atan(static_cast<long double>(y))));
+  });
+  return worst;
+}
+
+TEST_CASE("cube root within 0.51 ULP: a sixteenth of the mantissas, every exponent") {
+  const double worst = worst_cube_root(0x1p-126f, std::numeric_limits<float>::max(), 4093);
+  const double mantissas = worst_cube_root(1.0f, 7.9999995f, 17);
+  INFO("worst " << worst << " and " << mantissas);
+  CHECK(worst <= 0.51);
+  CHECK(mantissas <= 0.51);
+  CHECK(cube_root(27.0f) == 3.0f);
+  CHECK(cube_root(0x1p-126f) == 0x1p-42f);
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float x : {0.0f, -0.0f, -8.0f, 0x1p-127f, infinity, std::numeric_limits<float>::quiet_NaN()})
+    CHECK(std::bit_cast<std::uint32_t>(cube_root(x)) == 0u);
+}
+
+TEST_CASE("cube root on every normal float, arctangent on every float of its range", "[.long]") {
+  const double cube = worst_cube_root(0x1p-126f, std::numeric_limits<float>::max(), 1);
+  const double arctangent = worst_arctangent(0x1p-61f, 0x1p60f, 1);
+  INFO("cube root " << cube << " ULP, arctangent " << arctangent << " ULP");
+  CHECK(cube <= 0.51);
+  CHECK(arctangent <= 4.0);
+}
+
 TEST_CASE("reciprocal and the roots on every normal float", "[.long]") {
   double worst_reciprocal = 0, worst_reciprocal_root = 0;
   std::size_t wrong = 0;

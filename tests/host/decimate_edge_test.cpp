@@ -39,8 +39,8 @@ Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
 /// Each way to collapse.
 std::vector<DecimateOptions> ways() {
   std::vector<DecimateOptions> all(4);
-  all[1].placement = DecimatePlacement::kMidpoint;
-  all[2].placement = DecimatePlacement::kEndpoint;
+  all[1].placement = CollapsePlacement::kMidpoint;
+  all[2].placement = CollapsePlacement::kEndpoint;
   all[3].operation = DecimateOperation::kHalfEdgeCollapse;
   return all;
 }
@@ -201,7 +201,7 @@ TEST_CASE("decimation: flat sheets, cubes and tetrahedra, each way", "[decimate]
     const Decimated tetrahedron = run(test::tetrahedron(), options);
     CHECK(tetrahedron.stop == DecimateStop::kNoLegalCollapse);
     CHECK(tetrahedron.collapses == 0);
-    if (options.placement == DecimatePlacement::kMidpoint) continue;  // would round corners off
+    if (options.placement == CollapsePlacement::kMidpoint) continue;  // would round corners off
 
     const Decimated sheet = run(test::grid(12, 9), [&] {
       DecimateOptions o = options;

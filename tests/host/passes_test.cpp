@@ -409,11 +409,16 @@ TEST_CASE("dihedral angles agree with double precision") {
         continue;
       }
       const DVec3 a = area_of(set, h / 3), b = area_of(set, mesh.twins()[h] / 3);
-      const double expected = std::atan2(length(cross(a, b)), dot(a, b));
+      const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+      // Concave: the other face's far corner lies above this one's plane.
+      const std::uint32_t t = mesh.twins()[h];
+      const auto far = mesh.origins()[3 * (t / 3) + (t + 2) % 3];
+      const DVec3 here(set.points[mesh.origins()[h]]);
+      const double expected = dot(a, DVec3(set.points[far]) - here) > 0 ? -angle : angle;
       // The direction of each normal is good to 16 · 2^-21 (see above).
       CHECK(std::fabs(angles.half_edge[h] - expected) < 32 * 0x1p-21);
       for (const VertexId v : {mesh.origin(HalfEdgeId(h)), mesh.target(HalfEdgeId(h))})
-        maximum[v.index] = std::max(maximum[v.index], expected);
+        maximum[v.index] = std::max(maximum[v.index], angle);
     }
     for (std::size_t v = 0; v < maximum.size(); ++v)
       CHECK(std::fabs(angles.vertex_maximum[v] - maximum[v]) < 32 * 0x1p-21);

@@ -897,13 +897,13 @@ void sum_quadrics(CollapseMesh& mesh, float boundary_weight) {
 Result<Outcome> run(CollapseMesh& mesh, const DecimateOptions& options, const Limits& limits,
                     std::size_t vertices, const Progress& progress) {
   const bool ends = options.operation == DecimateOperation::kHalfEdgeCollapse ||
-                    options.placement == DecimatePlacement::kEndpoint;
+                    options.placement == CollapsePlacement::kEndpoint;
   const auto decimated = [&](auto& decimation) { return decimation.run(progress); };
   if (ends) {
     Decimation<EndCollapse, LazyQueue> d(mesh, limits, mesh.face_count(), vertices, options.keep_history);
     return decimated(d);
   }
-  if (options.placement == DecimatePlacement::kMidpoint) {
+  if (options.placement == CollapsePlacement::kMidpoint) {
     Decimation<MidpointCollapse, ExactQueue> d(mesh, limits, mesh.face_count(), vertices,
                                                options.keep_history);
     return decimated(d);

@@ -342,6 +342,41 @@ Result<std::vector<std::string>> write_mesh(const std::filesystem::path& path, c
   });
 }
 
+Result<void> write_polylines(const std::filesystem::path& path, std::span<const Vec3> points,
+                             std::span<const std::vector<std::uint32_t>> polylines) {
+  return detail::catching([&]() -> Result<void> {
+    std::vector<std::uint32_t> number(points.size(), 0);  // From 1, as OBJ counts.
+    VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open(path));
+    detail::Output out(file.file(), path == "-" ? "standard output" : path.string(), false);
+    std::uint32_t count = 0;
+    for (const auto& polyline : polylines)
+      for (const std::uint32_t v : polyline) {
+        if (v >= points.size()) return fail(ErrorCode::kUsage, "a polyline names no point");
+        if (number[v] != 0) continue;
+        number[v] = ++count;
+        char* to = out.room(256);
+        *to++ = 'v';
+        for (int axis = 0; axis < 3; ++axis) {
+          *to++ = ' ';
+          to = detail::put_number(to, points[v][axis]);
+        }
+        *to++ = '\n';
+        out.commit(to);
+      }
+    for (const auto& polyline : polylines) {
+      out.put("l");
+      for (const std::uint32_t v : polyline) {
+        char* to = out.room(32);
+        *to++ = ' ';
+        out.commit(detail::put_number(to, std::uint64_t{number[v]}));
+      }
+      out.put("\n");
+    }
+    VKMESH_CHECK(out.finish());
+    return file.commit();
+  });
+}
+
 Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh, const WriteOptions& options) {
   return detail::catching([&]() -> Result<std::vector<std::byte>> {
     VKMESH_CHECK(detail::check_writable(mesh, options));

@@ -7,11 +7,6 @@
 namespace vkmesh::detail {
 namespace {
 
-// Offsets and weights below these are far below the last place of a sum that they could stand in.
-constexpr float kTinyOffset = VKMESH_TINY_DIRECTION;
-constexpr float kFarAcross = 16.0f;                     // e^-128 is far below the next.
-constexpr float kTinyWeight = 8.6736173798840355e-19f;  // 2^-60
-
 // One array for each coordinate, so that lanes are neighbours in memory.
 struct Lanes {
   float x[kBilateralLanes] = {}, y[kBilateralLanes] = {}, z[kBilateralLanes] = {};
@@ -45,11 +40,12 @@ VKMESH_CLONES void mollify(const NearFaces& near, std::span<Vec3, kBilateralLane
     const Vec3 c = face.centroid;
     const float area = face.area;
     for (std::size_t i = 0; i < kBilateralLanes; ++i) {
-      const Vec3 to = zero_below(Vec3(c.x - p.x[i], c.y - p.y[i], c.z - p.z[i]) * per_spatial, kTinyOffset);
+      const Vec3 to =
+          zero_below(Vec3(c.x - p.x[i], c.y - p.y[i], c.z - p.z[i]) * per_spatial, VKMESH_TINY_DIRECTION);
       const float squared = squared_length(to);
       // Half of (|to| / ½)².
       const float f = exponential(squared < 1.0f ? -2.0f * squared : -2.0f);
-      const float weight = squared < 1.0f ? zero_below(area * f, kTinyWeight) : 0.0f;
+      const float weight = squared < 1.0f ? zero_below(area * f, VKMESH_TINY_GAUSSIAN) : 0.0f;
       sum.x[i] += weight * to.x;
       sum.y[i] += weight * to.y;
       sum.z[i] += weight * to.z;
@@ -58,7 +54,7 @@ VKMESH_CLONES void mollify(const NearFaces& near, std::span<Vec3, kBilateralLane
   }
   for (std::size_t i = 0; i < kBilateralLanes; ++i) {
     const float scale = reciprocal(total[i]);
-    const Vec3 move = zero_below(Vec3(sum.x[i], sum.y[i], sum.z[i]) * scale, kTinyOffset) * spatial;
+    const Vec3 move = zero_below(Vec3(sum.x[i], sum.y[i], sum.z[i]) * scale, VKMESH_TINY_DIRECTION) * spatial;
     points[i] = zero_below(points[i] + move, VKMESH_TINY_COORDINATE);
   }
 }
@@ -74,17 +70,18 @@ VKMESH_CLONES void move_to_predictions(const NearFaces& near, std::span<Vec3, kB
     const Vec3 c = face.centroid, n = face.normal;
     const float area = n.x == 0.0f && n.y == 0.0f && n.z == 0.0f ? 0.0f : face.area;
     for (std::size_t i = 0; i < kBilateralLanes; ++i) {
-      const Vec3 to = zero_below(Vec3(c.x - p.x[i], c.y - p.y[i], c.z - p.z[i]) * per_spatial, kTinyOffset);
+      const Vec3 to =
+          zero_below(Vec3(c.x - p.x[i], c.y - p.y[i], c.z - p.z[i]) * per_spatial, VKMESH_TINY_DIRECTION);
       const float squared = squared_length(to);
       // The prediction lies this far along the normal.
-      const float height = zero_below((n.x * to.x + n.y * to.y) + n.z * to.z, kTinyOffset);
-      const float across = zero_below(height * ratio, kTinyOffset);
-      const float held = std::fabs(across) < kFarAcross ? across : kFarAcross;
+      const float height = zero_below((n.x * to.x + n.y * to.y) + n.z * to.z, VKMESH_TINY_DIRECTION);
+      const float across = zero_below(height * ratio, VKMESH_TINY_DIRECTION);
+      const float held = std::fabs(across) < VKMESH_BILATERAL_FAR ? across : VKMESH_BILATERAL_FAR;
       // The spatial Gaussian ends at twice its width.
       const bool counts = squared < 4.0f;
       const float f = exponential(counts ? -0.5f * (squared + held * held) : -4.0f);
-      const float weight = counts ? zero_below(area * f, kTinyWeight) : 0.0f;
-      const float along = zero_below(weight * height, kTinyWeight);
+      const float weight = counts ? zero_below(area * f, VKMESH_TINY_GAUSSIAN) : 0.0f;
+      const float along = zero_below(weight * height, VKMESH_TINY_GAUSSIAN);
       sum.x[i] += along * n.x;
       sum.y[i] += along * n.y;
       sum.z[i] += along * n.z;
@@ -93,7 +90,8 @@ VKMESH_CLONES void move_to_predictions(const NearFaces& near, std::span<Vec3, kB
   }
   for (std::size_t i = 0; i < kBilateralLanes; ++i) {
     const float scale = reciprocal(total[i]);
-    const Vec3 move = zero_below(Vec3(sum.x[i], sum.y[i], sum.z[i]) * scale, kTinyOffset) * widths.spatial;
+    const Vec3 move =
+        zero_below(Vec3(sum.x[i], sum.y[i], sum.z[i]) * scale, VKMESH_TINY_DIRECTION) * widths.spatial;
     points[i] = zero_below(points[i] + move, VKMESH_TINY_COORDINATE);
   }
 }

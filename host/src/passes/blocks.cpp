@@ -20,8 +20,9 @@ VKMESH_CLONES void to_unit_vectors(std::span<Vec3> vectors) {
   }
 }
 
-VKMESH_CLONES void angles_between(std::span<const Vec3> a, std::span<const Vec3> b, std::span<float> out) {
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = angle_between(a[i], b[i]);
+VKMESH_CLONES void dihedral_angles(std::span<const Vec3> left, std::span<const Vec3> right,
+                                   std::span<const Vec3> along, std::span<float> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = dihedral_angle(left[i], right[i], along[i]);
 }
 
 VKMESH_CLONES std::uint32_t largest_magnitude(std::span<const Vec3> vectors) {

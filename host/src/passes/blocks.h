@@ -12,8 +12,9 @@ namespace vkmesh::detail {
 /// v ← unit_vector(v).
 void to_unit_vectors(std::span<Vec3> vectors);
 
-/// out[i] = angle_between(a[i], b[i]).
-void angles_between(std::span<const Vec3> a, std::span<const Vec3> b, std::span<float> out);
+/// out[i] = dihedral_angle(left[i], right[i], along[i]).
+void dihedral_angles(std::span<const Vec3> left, std::span<const Vec3> right, std::span<const Vec3> along,
+                     std::span<float> out);
 
 /// The largest magnitude among the coordinates, as its bits: those of a NaN or an infinity exceed every
 /// other.

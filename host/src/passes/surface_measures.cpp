@@ -6,6 +6,7 @@
 #include "catching.h"
 #include "parallel.h"
 #include "passes/pass_input.h"
+#include "passes/raw_measures.h"
 
 namespace vkmesh {
 namespace {
@@ -51,21 +52,6 @@ Bounds bounds_of(std::span<const Vec3> p) {
   return level[0];
 }
 
-struct Frame {
-  Vec3 centre{0.0f};
-  float scale = 0.0f, inverse_scale = 0.0f;
-};
-
-// A power of two brings the largest extent into [1, 2).
-Frame frame_of(const Bounds& bounds) {
-  const Vec3 extent = bounds.high - bounds.low;
-  const std::uint32_t largest =
-      std::max(std::max(detail::bits(extent.x), detail::bits(extent.y)), detail::bits(extent.z)) &
-      0x7f800000u;
-  return {bounds.low + zero_below(0.5f * extent, VKMESH_TINY_COORDINATE),
-          detail::from_bits(0x7f000000u - largest), detail::from_bits(largest)};
-}
-
 Sums measures_of(Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 area = area_vector(a, b, c);
   Sums s;
@@ -78,11 +64,20 @@ Sums measures_of(Vec3 a, Vec3 b, Vec3 c) {
 
 }  // namespace
 
+detail::MeasuresFrame detail::frame_of_bounds(Vec3 low, Vec3 high) {
+  // A power of two brings the largest extent into [1, 2).
+  const Vec3 extent = high - low;
+  const std::uint32_t largest =
+      std::max(std::max(bits(extent.x), bits(extent.y)), bits(extent.z)) & 0x7f800000u;
+  return {low + zero_below(0.5f * extent, VKMESH_TINY_COORDINATE), from_bits(0x7f000000u - largest),
+          from_bits(largest)};
+}
+
 SurfaceMeasures to_surface_measures(const RawMeasures& raw) {
   SurfaceMeasures result;
   result.low = Vec3(raw[0], raw[1], raw[2]);
   result.high = Vec3(raw[3], raw[4], raw[5]);
-  const Frame frame = frame_of({result.low, result.high});
+  const detail::MeasuresFrame frame = detail::frame_of_bounds(result.low, result.high);
   const double unit = frame.inverse_scale, twice_area = raw[6];
   result.area = 0.5 * twice_area * unit * unit;
   result.volume = double{raw[10]} / 6.0 * unit * unit * unit;
@@ -91,42 +86,43 @@ SurfaceMeasures to_surface_measures(const RawMeasures& raw) {
   return result;
 }
 
+RawMeasures detail::raw_measures(std::span<const std::uint32_t> corners, std::span<const Vec3> p) {
+  const Bounds bounds = bounds_of(p);
+  const MeasuresFrame frame = frame_of_bounds(bounds.low, bounds.high);
+  const auto scaled = [&](std::size_t h) {
+    return zero_below((p[corners[h]] - frame.centre) * frame.scale, VKMESH_TINY_DIRECTION);
+  };
+  const auto sum_of = [](std::size_t begin, std::size_t end, auto&& sums) {
+    Sums sum;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Sums s = sums(i);
+      sum.twice_area += s.twice_area;
+      sum.moment += s.moment;
+      sum.six_volumes += s.six_volumes;
+    }
+    return sum;
+  };
+  std::vector<Sums> level = by_blocks<Sums>(corners.size() / 3, [&](std::size_t begin, std::size_t end) {
+    return sum_of(begin, end, [&](std::size_t f) {
+      return measures_of(scaled(3 * f), scaled(3 * f + 1), scaled(3 * f + 2));
+    });
+  });
+  while (level.size() > 1)
+    level = by_blocks<Sums>(level.size(), [&](std::size_t begin, std::size_t end) {
+      return sum_of(begin, end, [&](std::size_t i) { return level[i]; });
+    });
+  const Sums sum = level.empty() ? Sums{} : level[0];
+  return {bounds.low.x,   bounds.low.y, bounds.low.z, bounds.high.x, bounds.high.y,  bounds.high.z,
+          sum.twice_area, sum.moment.x, sum.moment.y, sum.moment.z,  sum.six_volumes};
+}
+
 Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
   return detail::catching([&]() -> Result<SurfaceMeasures> {
     VKMESH_CHECK(detail::require_triangles(mesh, "surface_measures"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
     std::vector<Vec3> p(positions.size());
     VKMESH_CHECK(prepare_positions(positions, p));
-    const Bounds bounds = bounds_of(p);
-    const Frame frame = frame_of(bounds);
-    const auto corners = mesh.origins();
-    const auto scaled = [&](std::size_t h) {
-      return zero_below((p[corners[h]] - frame.centre) * frame.scale, VKMESH_TINY_DIRECTION);
-    };
-    std::vector<Sums> level = by_blocks<Sums>(mesh.face_count(), [&](std::size_t begin, std::size_t end) {
-      Sums sum;
-      for (std::size_t f = begin; f < end; ++f) {
-        const Sums s = measures_of(scaled(3 * f), scaled(3 * f + 1), scaled(3 * f + 2));
-        sum.twice_area += s.twice_area;
-        sum.moment += s.moment;
-        sum.six_volumes += s.six_volumes;
-      }
-      return sum;
-    });
-    while (level.size() > 1)
-      level = by_blocks<Sums>(level.size(), [&](std::size_t begin, std::size_t end) {
-        Sums sum;
-        for (std::size_t i = begin; i < end; ++i) {
-          sum.twice_area += level[i].twice_area;
-          sum.moment += level[i].moment;
-          sum.six_volumes += level[i].six_volumes;
-        }
-        return sum;
-      });
-    const Sums sum = level.empty() ? Sums{} : level[0];
-    return to_surface_measures({bounds.low.x, bounds.low.y, bounds.low.z, bounds.high.x, bounds.high.y,
-                                bounds.high.z, sum.twice_area, sum.moment.x, sum.moment.y, sum.moment.z,
-                                sum.six_volumes});
+    return to_surface_measures(detail::raw_measures(mesh.origins(), p));
   });
 }
 

@@ -10,6 +10,7 @@
 #include <vkmesh/engine/context.h>
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/node_neighbours.h>
+#include <vkmesh/passes/collapse_costs.h>
 #include <vkmesh/passes/curvatures.h>
 #include <vkmesh/passes/surface_measures.h>
 #include <vkmesh/result.h>
@@ -25,6 +26,10 @@ struct MeshPasses {
   bool triangle_normals = false;
   bool curvatures = false;
   bool surface_measures = false;
+  bool bilateral_smoothing = false;
+  bool restore_volume = false;
+  bool collapse_costs = false;
+  bool swap_scores = false;
 };
 
 /// The arrays of a HalfEdgeMesh and the views that the passes gather over, uploaded. Connectivity does not
@@ -42,6 +47,7 @@ class DeviceMesh {
 
   [[nodiscard]] std::uint32_t vertex_count() const { return vertices_; }
   [[nodiscard]] std::uint32_t face_count() const { return faces_; }
+  [[nodiscard]] bool is_closed() const { return closed_; }  ///< Has no boundary.
   [[nodiscard]] std::uint32_t half_edge_count() const { return 3 * faces_; }
   [[nodiscard]] const MeshPasses& passes() const { return passes_; }
 
@@ -62,6 +68,9 @@ class DeviceMesh {
   [[nodiscard]] Result<std::vector<VertexCurvature>> download_curvatures() const;
   [[nodiscard]] Result<SurfaceMeasures> download_surface_measures() const;
   [[nodiscard]] Result<std::vector<float>> download_vertex_maxima() const;
+  [[nodiscard]] Result<std::vector<VertexQuadric>> download_quadrics() const;
+  [[nodiscard]] Result<std::vector<float>> download_collapse_costs() const;
+  [[nodiscard]] Result<std::vector<float>> download_swap_scores() const;
 
   // The buffers, for passes; those of other passes are empty (size 0).
   [[nodiscard]] const Buffer& positions() const { return positions_; }  ///< 3 floats a vertex.
@@ -85,6 +94,10 @@ class DeviceMesh {
   [[nodiscard]] const Buffer& vertex_maxima() const { return vertex_maxima_; }  ///< 1 float a vertex.
   [[nodiscard]] const Buffer& curvatures() const { return curvatures_; }        ///< 4 floats a vertex.
   [[nodiscard]] const Buffer& surface_measures() const { return surface_measures_; }  ///< RawMeasures.
+  [[nodiscard]] const Buffer& volume_before() const { return volume_before_; }        ///< RawMeasures.
+  [[nodiscard]] const Buffer& quadrics() const { return quadrics_; }                  ///< 6 floats a vertex.
+  [[nodiscard]] const Buffer& collapse_costs() const { return collapse_costs_; }  ///< 1 float a half-edge.
+  [[nodiscard]] const Buffer& swap_scores() const { return swap_scores_; }        ///< 1 float a half-edge.
   // Scratch of sums over all elements.
   [[nodiscard]] const Buffer& block_sums() const { return block_sums_; }
   [[nodiscard]] const Buffer& more_block_sums() const { return more_block_sums_; }
@@ -92,11 +105,12 @@ class DeviceMesh {
  private:
   std::uint32_t vertices_ = 0;
   std::uint32_t faces_ = 0;
+  bool closed_ = false;
   MeshPasses passes_;
   Buffer positions_, smoothed_positions_, corners_, twins_, neighbour_offsets_, neighbour_ids_,
       boundary_bits_, locked_bits_, corner_offsets_, corner_half_edges_, face_vectors_, triangle_normals_,
-      vertex_normals_, half_edge_angles_, vertex_maxima_, curvatures_, surface_measures_, block_sums_,
-      more_block_sums_;
+      vertex_normals_, half_edge_angles_, vertex_maxima_, curvatures_, surface_measures_, volume_before_,
+      quadrics_, collapse_costs_, swap_scores_, block_sums_, more_block_sums_;
 };
 
 }  // namespace vkmesh

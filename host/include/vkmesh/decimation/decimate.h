@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/passes/collapse_costs.h>
 #include <vkmesh/progress.h>
 #include <vkmesh/result.h>
 #include <vkmesh/surface_distance.h>
@@ -23,13 +24,6 @@ enum class DecimateOperation {
   kHalfEdgeCollapse  ///< One end of an edge moves to the other: no new points are made.
 };
 
-/// Where an edge collapse puts the point that remains.
-enum class DecimatePlacement {
-  kOptimal,   ///< Where the quadric error is least.
-  kMidpoint,  ///< In the middle of the edge.
-  kEndpoint   ///< At the end where the error is less: a half-edge collapse.
-};
-
 enum class DecimateBoundary {
   kKept,     ///< Boundary vertices are locked: the boundary stays as it is.
   kInShape,  ///< Constraint planes hold the boundary's shape; see boundary_weight.
@@ -40,7 +34,7 @@ struct DecimateOptions {
   /// Default edge collapse.
   DecimateOperation operation = DecimateOperation::kEdgeCollapse;
   /// Of edge collapses. Default optimal.
-  DecimatePlacement placement = DecimatePlacement::kOptimal;
+  CollapsePlacement placement = CollapsePlacement::kOptimal;
 
   // Rules to stop by, of which any number may be set; the first that is met counts. None set: until no legal
   // collapse is left.

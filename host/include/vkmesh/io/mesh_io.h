@@ -77,4 +77,10 @@ struct WriteOptions {
 [[nodiscard]] Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh,
                                                          const WriteOptions& options);
 
+/// Writes polylines, each the points of one in order, as the lines ("l") of an OBJ file that holds the points
+/// they name. Otherwise as write_mesh(). Errors: kUsage for an index out of range; kNotWritable;
+/// kOutOfMemory.
+[[nodiscard]] Result<void> write_polylines(const std::filesystem::path& path, std::span<const Vec3> points,
+                                           std::span<const std::vector<std::uint32_t>> polylines);
+
 }  // namespace vkmesh

@@ -16,6 +16,9 @@
 // Seeds of Newton's iteration, close to the best for each; the iterations below absorb the rest.
 #define VKMESH_RECIPROCAL_SEED 0x7ef311c7u
 #define VKMESH_RECIPROCAL_ROOT_SEED 0x5f375a86u
+#define VKMESH_RECIPROCAL_CUBE_ROOT_SEED 0x54a2fa8cu
+#define VKMESH_THIRD 0.333333343267440796f
+#define VKMESH_FOUR_THIRDS 1.33333337306976318f
 
 // atan(t) / t on [0, 1] as a polynomial in t²: minimax for the relative error, 2.4e-9 (Remez' algorithm).
 #define VKMESH_ATAN_0 1.0f
@@ -58,6 +61,21 @@
 // Cotangents are held within ±2^10: those of angles down to 0.056 degrees.
 #define VKMESH_COTANGENT_BOUND 1024.0f
 #define VKMESH_COTANGENT_BOUND_INVERSE 0.0009765625f
+// Bilateral smoothing: areas in units of σ_f², weights below which a face does not count, and how many σ_g
+// across a prediction may lie (e^-128 is far below every other weight).
+#define VKMESH_BILATERAL_AREA_BOUND 1.099511627776e12f /* 2^40 */
+#define VKMESH_BILATERAL_AREA_BOUND_INVERSE 9.0949470177292824e-13f
+#define VKMESH_TINY_GAUSSIAN 8.6736173798840355e-19f /* 2^-60 */
+#define VKMESH_BILATERAL_FAR 16.0f
+// Quadrics: entries that count, and how flat a direction is left alone, as a share of the steepest and at
+// all.
+#define VKMESH_TINY_QUADRIC 8.6736173798840355e-19f /* 2^-60 */
+#define VKMESH_FLAT_SHARE 9.5367431640625e-07f      /* 2^-20 */
+#define VKMESH_FLAT_LEAST 8.0779356694631609e-28f   /* 2^-90 */
+#define VKMESH_QUALITY_SCALE 3.46410161513775f      /* 2√3: makes an equilateral triangle's quality 1 */
+// Volumes are restored up to a factor of 2^30.
+#define VKMESH_VOLUME_RATIO_BOUND 1073741824.0f
+#define VKMESH_VOLUME_RATIO_BOUND_INVERSE 9.31322574615478515625e-10f
 // Curvatures are held within ±2^100.
 #define VKMESH_CURVATURE_BOUND 1.2676506002282294e30f
 #define VKMESH_CURVATURE_BOUND_INVERSE 7.8886090522101181e-31f

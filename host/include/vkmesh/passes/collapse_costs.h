@@ -1,0 +1,56 @@
+// The quadric of every vertex and the cost of collapsing every edge: the first fill of decimation's queues.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/result.h>
+#include <vkmesh/vec.h>
+
+namespace vkmesh {
+
+/// Where an edge collapse puts the point that remains.
+enum class CollapsePlacement : std::uint32_t {
+  kOptimal,   ///< Where the quadric error is least.
+  kMidpoint,  ///< In the middle of the edge.
+  kEndpoint   ///< At the end where the error is less: a half-edge collapse.
+};
+
+struct CollapseCostOptions {
+  /// Positions are taken as (position − centre) · scale, which should bring them into [−2, 2]: the middle of
+  /// the bounding box, and a power of two. See unit_frame().
+  Vec3 centre{0.0f};
+  float scale = 1.0f;
+  /// Of the planes that stand on boundary edges, perpendicular to their face, relative to a plane of the same
+  /// area. In [0, 2^20]. Default 100.
+  float boundary_weight = 100.0f;
+  CollapsePlacement placement = CollapsePlacement::kOptimal;  ///< Default optimal.
+};
+
+/// Centre and scale for the given positions. O(n).
+[[nodiscard]] CollapseCostOptions unit_frame(std::span<const Vec3> positions);
+
+/// Σ w n nᵀ over the planes through the vertex, as xx, xy, xz, yy, yz, zz: with the vertex as origin nothing
+/// else of a quadric is left. In scaled units of length².
+using VertexQuadric = std::array<float, 6>;
+
+/// M. Garland and P. Heckbert, "Surface simplification using quadric error metrics", 1997: a plane for each
+/// triangle, weighted by its area, summed in ascending order of faces. Entries below 2^-60 are 0. The
+/// reference of shaders/quadrics.comp, equal to it bit for bit. O(faces). Errors: as vertex_normals(), and
+/// kUsage for options out of range.
+[[nodiscard]] Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh,
+                                                          std::span<const Vec3> positions,
+                                                          const CollapseCostOptions& options = {});
+
+/// For each half-edge the quadric error of collapsing its edge, the same for twins: area times squared
+/// distance in scaled units, at least 0; the largest float where that has no value. The reference of
+/// shaders/collapse_costs.comp, equal to it bit for bit. O(half-edges). Errors: as quadrics(), and kUsage
+/// unless one quadric for each vertex.
+[[nodiscard]] Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh,
+                                                        std::span<const Vec3> positions,
+                                                        std::span<const VertexQuadric> quadrics,
+                                                        const CollapseCostOptions& options = {});
+
+}  // namespace vkmesh

@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <cmath>
+
+#include <vkmesh/passes/collapse_costs.h>
+
+#include "catching.h"
+#include "parallel.h"
+#include "passes/pass_input.h"
+#include "passes/raw_measures.h"
+
+namespace vkmesh {
+namespace {
+
+Result<void> check(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                   const CollapseCostOptions& options) {
+  VKMESH_CHECK(detail::require_triangles(mesh, "quadrics"));
+  VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+  return detail::require_collapse_cost_options(options);
+}
+
+// Products below this count as zero, so that none is subnormal.
+float seen(float x) {
+  return zero_below(x, VKMESH_TINY_COORDINATE);
+}
+
+// A plane through the origin, by its unit normal.
+VertexQuadric plane(Vec3 n, float weight) {
+  const Vec3 w = zero_below(weight * n, VKMESH_TINY_QUADRIC);
+  const auto entry = [](float x) { return zero_below(x, VKMESH_TINY_QUADRIC); };
+  return {entry(w.x * n.x), entry(w.x * n.y), entry(w.x * n.z),
+          entry(w.y * n.y), entry(w.y * n.z), entry(w.z * n.z)};
+}
+
+// The plane that stands on the edge from p to q, perpendicular to the face of normal n.
+VertexQuadric boundary_plane(Vec3 p, Vec3 q, Vec3 n, float boundary_weight) {
+  const Vec3 e = zero_below(q - p, VKMESH_TINY_DIRECTION);
+  const Vec3 across =
+      zero_below(Vec3(e.y * n.z - e.z * n.y, e.z * n.x - e.x * n.z, e.x * n.y - e.y * n.x), VKMESH_TINY_AREA);
+  return plane(unit_vector(across), boundary_weight * squared_length(e));
+}
+
+void add(VertexQuadric& sum, const VertexQuadric& more) {
+  for (std::size_t k = 0; k < 6; ++k) sum[k] += more[k];
+}
+
+Vec3 times(const VertexQuadric& a, Vec3 x) {
+  return {(a[0] * x.x + a[1] * x.y) + a[2] * x.z, (a[1] * x.x + a[3] * x.y) + a[4] * x.z,
+          (a[2] * x.x + a[4] * x.y) + a[5] * x.z};
+}
+
+// x · A x, from its vertex.
+float value(const VertexQuadric& a, Vec3 x) {
+  const Vec3 from = zero_below(x, VKMESH_TINY_DIRECTION);
+  const Vec3 ax = zero_below(times(a, from), VKMESH_TINY_COORDINATE);
+  const float sum = (seen(from.x * ax.x) + seen(from.y * ax.y)) + seen(from.z * ax.z);
+  return sum > 0.0f ? sum : 0.0f;
+}
+
+// Both quadrics at x, relative to p; q lies at d.
+float both(const VertexQuadric& p, const VertexQuadric& q, Vec3 d, Vec3 x) {
+  return value(p, x) + value(q, x - d);
+}
+
+// L D Lᵀ of A + εI, by which A s = −g is solved.
+struct Factors {
+  float r0, r1, r2, l1, l2, l3;
+
+  explicit Factors(const VertexQuadric& a) {
+    // Directions in which the quadric is flatter than this share of its steepest are left alone; pivots are
+    // at least that share but for rounding.
+    const float e = ((a[0] + a[3]) + a[5]) * VKMESH_FLAT_SHARE + VKMESH_FLAT_LEAST, least = 0.5f * e;
+    r0 = reciprocal(a[0] + e);
+    l1 = seen(a[1] * r0);
+    l2 = seen(a[2] * r0);
+    const float p1 = (a[3] + e) - seen(l1 * a[1]);
+    r1 = reciprocal(p1 > least ? p1 : least);
+    const float u = seen(a[4] - seen(l2 * a[1]));
+    l3 = seen(u * r1);
+    const float p2 = ((a[5] + e) - seen(l2 * a[2])) - seen(l3 * u);
+    r2 = reciprocal(p2 > least ? p2 : least);
+  }
+
+  [[nodiscard]] Vec3 solve(Vec3 g) const {
+    const float w0 = -g.x, w1 = seen(-g.y - seen(l1 * w0)), w2 = seen((-g.z - seen(l2 * w0)) - seen(l3 * w1));
+    const float z = seen(w2 * r2);
+    const float y = seen(seen(w1 * r1) - seen(l3 * z));
+    const float x = seen((seen(w0 * r0) - seen(l1 * y)) - seen(l2 * z));
+    return {x, y, z};
+  }
+};
+
+// Where both quadrics together are least, relative to p: from the middle, which is where the sum keeps its
+// digits.
+Vec3 least_place(const VertexQuadric& p, const VertexQuadric& q, Vec3 d) {
+  const Vec3 m = 0.5f * d;
+  VertexQuadric sum, difference;
+  for (std::size_t k = 0; k < 6; ++k) {
+    sum[k] = p[k] + q[k];
+    difference[k] = seen(p[k] - q[k]);
+  }
+  const Vec3 g = zero_below(times(difference, m), VKMESH_TINY_COORDINATE);
+  const Factors factors(sum);
+  const Vec3 first = factors.solve(g);
+  // Once more for the rest, which takes back what ε has shortened of steep directions.
+  const Vec3 rest =
+      zero_below(g + times(sum, zero_below(first, VKMESH_TINY_DIRECTION)), VKMESH_TINY_COORDINATE);
+  const Vec3 s = zero_below(first + factors.solve(rest), VKMESH_TINY_DIRECTION);
+  // Farther from the middle than twice the edge no planes of its faces can lead in earnest.
+  const bool near = squared_length(s) <= 4.0f * squared_length(d);
+  return near ? m + s : m;
+}
+
+float cost_of(const VertexQuadric& p, const VertexQuadric& q, Vec3 d, CollapsePlacement placement) {
+  float cost = 0.0f;
+  if (placement == CollapsePlacement::kEndpoint) {
+    const float at_p = both(p, q, d, Vec3(0.0f)), at_q = both(p, q, d, d);
+    cost = at_q <= at_p ? at_q : at_p;
+  } else {
+    cost = both(p, q, d, placement == CollapsePlacement::kOptimal ? least_place(p, q, d) : 0.5f * d);
+  }
+  return (detail::bits(cost) & 0x7fffffffu) < 0x7f800000u ? cost : VKMESH_LARGEST;
+}
+
+}  // namespace
+
+Result<void> detail::require_collapse_cost_options(const CollapseCostOptions& options) {
+  if (!(options.scale >= 0x1p-60f && options.scale <= 0x1p60f))
+    return fail(ErrorCode::kUsage, "the scale of collapse costs must lie in [2^-60, 2^60]");
+  if (!(options.boundary_weight >= 0.0f && options.boundary_weight <= 0x1p20f))
+    return fail(ErrorCode::kUsage, "boundary_weight must lie in [0, 2^20]");
+  for (int k = 0; k < 3; ++k)
+    if (!(std::fabs(options.centre[k]) < kMaxCoordinate))
+      return fail(ErrorCode::kUsage, "the centre of collapse costs must be finite and below 2^60");
+  return {};
+}
+
+CollapseCostOptions unit_frame(std::span<const Vec3> positions) {
+  CollapseCostOptions options;
+  if (positions.empty()) return options;
+  Vec3 low = positions[0], high = low;
+  for (const Vec3& p : positions)
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  const detail::MeasuresFrame frame = detail::frame_of_bounds(low, high);
+  options.centre = frame.centre;
+  options.scale = std::clamp(frame.scale, 0x1p-60f, 0x1p60f);
+  return options;
+}
+
+Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                            const CollapseCostOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<VertexQuadric>> {
+    VKMESH_CHECK(check(mesh, positions, options));
+    const auto corners = mesh.origins(), twins = mesh.twins();
+    const auto scaled = [&](std::size_t h) {
+      return zero_below((positions[corners[h]] - options.centre) * options.scale, VKMESH_TINY_DIRECTION);
+    };
+    // The planes of a block of faces by all cores, then their sums in the order in which the shader gathers.
+    constexpr std::size_t kBlock = 1 << 16;
+    std::vector<VertexQuadric> result(positions.size(), VertexQuadric{}),
+        planes(std::min(kBlock, mesh.face_count()));
+    std::vector<Vec3> normals(planes.size());
+    for (std::size_t first = 0; first < mesh.face_count(); first += kBlock) {
+      const std::size_t count = std::min(kBlock, mesh.face_count() - first);
+      detail::parallel_ranges(count, 1 << 12, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+          const std::size_t h = 3 * (first + f);
+          const Vec3 area = area_vector(scaled(h), scaled(h + 1), scaled(h + 2));
+          normals[f] = unit_vector(area);
+          planes[f] = plane(normals[f], 0.5f * vector_length(area));
+        }
+      });
+      for (std::size_t f = 0; f < count; ++f)
+        for (std::size_t i = 0; i < 3; ++i) {
+          const std::size_t h = 3 * (first + f) + i, next = 3 * (first + f) + (i + 1) % 3,
+                            previous = 3 * (first + f) + (i + 2) % 3;
+          VertexQuadric& sum = result[corners[h]];
+          add(sum, planes[f]);
+          if (twins[h] == kInvalid)
+            add(sum, boundary_plane(scaled(h), scaled(next), normals[f], options.boundary_weight));
+          if (twins[previous] == kInvalid)
+            add(sum, boundary_plane(scaled(previous), scaled(h), normals[f], options.boundary_weight));
+        }
+    }
+    return result;
+  });
+}
+
+Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                          std::span<const VertexQuadric> quadrics,
+                                          const CollapseCostOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<float>> {
+    VKMESH_CHECK(check(mesh, positions, options));
+    if (quadrics.size() != mesh.vertex_count())
+      return fail(ErrorCode::kUsage, "collapse costs need one quadric for each vertex");
+    const auto corners = mesh.origins(), twins = mesh.twins();
+    const auto scaled = [&](std::uint32_t v) {
+      return zero_below((positions[v] - options.centre) * options.scale, VKMESH_TINY_DIRECTION);
+    };
+    std::vector<float> costs(mesh.half_edge_count());
+    detail::parallel_ranges(costs.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t h = begin; h < end; ++h) {
+        const std::uint32_t t = twins[h];
+        if (t < h) continue;
+        const std::uint32_t p = corners[h], q = corners[h % 3 == 2 ? h - 2 : h + 1];
+        const Vec3 d = zero_below(scaled(q) - scaled(p), VKMESH_TINY_DIRECTION);
+        costs[h] = cost_of(quadrics[p], quadrics[q], d, options.placement);
+        if (t != kInvalid) costs[t] = costs[h];
+      }
+    });
+    return costs;
+  });
+}
+
+}  // namespace vkmesh

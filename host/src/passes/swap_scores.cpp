@@ -1,0 +1,78 @@
+#include <algorithm>
+
+#include <vkmesh/passes/swap_scores.h>
+
+#include "catching.h"
+#include "parallel.h"
+#include "passes/pass_input.h"
+
+namespace vkmesh {
+namespace {
+
+float squared_distance(Vec3 a, Vec3 b) {
+  return squared_length(zero_below(b - a, VKMESH_TINY_LENGTH));
+}
+
+float least_angle(Vec3 a, Vec3 b, Vec3 c, float twice_area) {
+  const float at_a = corner_angle(corner_product(a, b, c), twice_area);
+  const float at_b = corner_angle(corner_product(b, c, a), twice_area);
+  const float at_c = corner_angle(corner_product(c, a, b), twice_area);
+  return std::min(std::min(at_a, at_b), at_c);
+}
+
+float quality(Vec3 a, Vec3 b, Vec3 c, float twice_area) {
+  const float sides = (squared_distance(a, b) + squared_distance(b, c)) + squared_distance(c, a);
+  return bounded_quotient(VKMESH_QUALITY_SCALE * twice_area, zero_below(sides, VKMESH_TINY_AREA), 2.0f, 0.5f);
+}
+
+struct Triangle {
+  Vec3 area{0.0f};
+  float score = 0.0f;
+};
+
+Triangle triangle(Vec3 a, Vec3 b, Vec3 c, SwapCriterion criterion) {
+  Triangle result;
+  result.area = area_vector(a, b, c);
+  const float twice_area = vector_length(result.area);
+  result.score =
+      criterion == SwapCriterion::kMinAngle ? least_angle(a, b, c, twice_area) : quality(a, b, c, twice_area);
+  return result;
+}
+
+bool faces_away(Vec3 unit, Vec3 from) {
+  const Vec3 other = unit_vector(from);
+  return !((unit.x * other.x + unit.y * other.y) + unit.z * other.z > 0.0f);
+}
+
+// The edge runs from p to q; `left` and `right` are the corners opposite to it.
+float score_of(Vec3 p, Vec3 q, Vec3 left, Vec3 right, SwapCriterion criterion) {
+  const Triangle t0 = triangle(p, q, left, criterion), t1 = triangle(q, p, right, criterion);
+  const Triangle n0 = triangle(left, right, q, criterion), n1 = triangle(right, left, p, criterion);
+  const Vec3 before = unit_vector(t0.area + t1.area);
+  const float gain = std::min(n0.score, n1.score) - std::min(t0.score, t1.score);
+  return faces_away(before, n0.area) || faces_away(before, n1.area) ? kNoSwap : gain;
+}
+
+}  // namespace
+
+Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                       SwapCriterion criterion) {
+  return detail::catching([&]() -> Result<std::vector<float>> {
+    VKMESH_CHECK(detail::require_triangles(mesh, "swap_scores"));
+    VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+    const auto corners = mesh.origins(), twins = mesh.twins();
+    const auto opposite = [&](std::size_t h) { return positions[corners[h % 3 == 0 ? h + 2 : h - 1]]; };
+    std::vector<float> scores(mesh.half_edge_count(), kNoSwap);
+    detail::parallel_ranges(scores.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t h = begin; h < end; ++h) {
+        const std::uint32_t t = twins[h];
+        if (t == kInvalid || t < h) continue;
+        scores[h] = scores[t] =
+            score_of(positions[corners[h]], positions[corners[t]], opposite(h), opposite(t), criterion);
+      }
+    });
+    return scores;
+  });
+}
+
+}  // namespace vkmesh
