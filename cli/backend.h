@@ -22,8 +22,9 @@
 #include "common.h"
 
 namespace vkmesh {
+class Context;
 struct ContextOptions;
-}
+}  // namespace vkmesh
 
 namespace vkmesh::cli {
 
@@ -73,7 +74,11 @@ void use_host(Job& job);
 /// error.
 [[nodiscard]] ContextOptions context_options(const std::string& device);
 
-/// A Vulkan device, chosen as ContextOptions::device is. Errors: kNoDevice, kOutOfMemory.
+/// A Vulkan device, chosen as ContextOptions::device is, reported in the job. Errors: kNoDevice,
+/// kOutOfMemory.
+[[nodiscard]] Result<std::unique_ptr<Context>> open_context(Job& job, const std::string& device);
+
+/// A backend on a Vulkan device, chosen as ContextOptions::device is. Errors: kNoDevice, kOutOfMemory.
 [[nodiscard]] Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device);
 #endif
 

@@ -29,6 +29,7 @@ void add_smooth(CLI::App& app, Program& program);
 void add_simplify(CLI::App& app, Program& program);
 void add_render(CLI::App& app, Program& program);
 void add_compare(CLI::App& app, Program& program);
+void add_bench(CLI::App& app, Program& program);
 void add_digest(CLI::App& app, Program& program);
 void add_devices(CLI::App& app, Program& program);
 

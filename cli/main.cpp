@@ -38,7 +38,7 @@ int run(int argc, char** argv) {
 #ifdef VKMESH_HAS_VULKAN
         add_render,
 #endif
-        add_compare, add_digest, add_devices})
+        add_compare, add_bench, add_digest, add_devices})
     add(app, program);
 
   // The parser would only say that a subcommand is required.

@@ -165,12 +165,17 @@ ContextOptions context_options(const std::string& device) {
   return options;
 }
 
-Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device) {
+Result<std::unique_ptr<Context>> open_context(Job& job, const std::string& device) {
   VKMESH_TRY(std::unique_ptr<Context> context,
              job.timed("open", [&] { return Context::create(context_options(device)); }));
   const DeviceInfo& info = context->info();
   job.json()["device"] = {{"name", info.name}, {"driver", info.driver}, {"type", name_of(info.type)}};
   job.row("device", info.name + "; " + info.driver + "; " + name_of(info.type));
+  return context;
+}
+
+Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device) {
+  VKMESH_TRY(std::unique_ptr<Context> context, open_context(job, device));
   return std::make_unique<VulkanBackend>(job, std::move(context));
 }
 
