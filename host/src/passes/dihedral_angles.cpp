@@ -1,52 +1,60 @@
 #include <algorithm>
 
 #include <vkmesh/passes/dihedral_angles.h>
+#include <vkmesh/passes/triangle_normals.h>
 
 #include "catching.h"
+#include "parallel.h"
 #include "passes/blocks.h"
 #include "passes/pass_input.h"
 
 namespace vkmesh {
+namespace {
+
+// Some edges by their smaller half-edges: the normals on their sides, and the angles between these.
+struct Block {
+  std::vector<std::uint32_t> edges;
+  std::vector<Vec3> left, right;
+  std::vector<float> angles;
+
+  void resize(std::size_t n) { edges.resize(n), left.resize(n), right.resize(n), angles.resize(n); }
+};
+
+}  // namespace
 
 Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
   return detail::catching([&]() -> Result<DihedralAngles> {
     VKMESH_CHECK(detail::require_triangles(mesh, "dihedral_angles"));
-    VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
-    const std::span<const Vec3> p = positions;
     const auto corners = mesh.origins(), twins = mesh.twins();
-    std::vector<Vec3> normals(mesh.face_count());
-    for (std::size_t f = 0; f < normals.size(); ++f)
-      normals[f] = area_vector(p[corners[3 * f]], p[corners[3 * f + 1]], p[corners[3 * f + 2]]);
-    detail::to_unit_vectors(normals);
-
+    VKMESH_TRY(const std::vector<Vec3> normals, triangle_normals(mesh, positions));
     DihedralAngles result;
     result.half_edge.assign(corners.size(), 0.0f);
-    result.vertex_maximum.assign(p.size(), 0.0f);
+    result.vertex_maximum.assign(positions.size(), 0.0f);
     // Edges are gathered in blocks small enough to stay in the cache, so that the angles fill vector
     // registers.
-    constexpr std::size_t kBlock = 512;
-    std::vector<std::uint32_t> edges;
-    std::vector<Vec3> left, right;
-    std::vector<float> angles(kBlock);
-    const auto finish_block = [&] {
-      detail::angles_between(left, right, std::span(angles).first(edges.size()));
-      for (std::size_t i = 0; i < edges.size(); ++i) {
-        const std::uint32_t h = edges[i], t = twins[h];
-        result.half_edge[h] = result.half_edge[t] = angles[i];
-        for (const std::uint32_t end : {corners[h], corners[t]})
-          result.vertex_maximum[end] = std::max(result.vertex_maximum[end], angles[i]);
+    const auto measure = [&](std::size_t begin, std::size_t end, Block& block) {
+      block.resize(end - begin);
+      std::size_t count = 0;
+      for (std::size_t h = begin; h < end; ++h) {
+        block.edges[count] = static_cast<std::uint32_t>(h);
+        // No branch, which would be guessed wrong every other time.
+        count += static_cast<std::size_t>(twins[h] > h) & static_cast<std::size_t>(twins[h] != kInvalid);
       }
-      edges.clear(), left.clear(), right.clear();
+      block.resize(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        block.left[i] = normals[block.edges[i] / 3];
+        block.right[i] = normals[twins[block.edges[i]] / 3];
+      }
+      detail::angles_between(block.left, block.right, block.angles);
+      for (std::size_t i = 0; i < count; ++i)
+        result.half_edge[block.edges[i]] = result.half_edge[twins[block.edges[i]]] = block.angles[i];
     };
-    for (std::uint32_t h = 0; h < corners.size(); ++h) {
-      const std::uint32_t t = twins[h];
-      if (t == kInvalid || t < h) continue;
-      edges.push_back(h);
-      left.push_back(normals[h / 3]);
-      right.push_back(normals[t / 3]);
-      if (edges.size() == kBlock) finish_block();
-    }
-    finish_block();
+    const auto spread = [&](std::size_t, std::size_t, const Block& block) {
+      for (std::size_t i = 0; i < block.edges.size(); ++i)
+        for (const std::uint32_t end : {corners[block.edges[i]], corners[twins[block.edges[i]]]})
+          result.vertex_maximum[end] = std::max(result.vertex_maximum[end], block.angles[i]);
+    };
+    detail::parallel_in_order<Block>(corners.size(), 1 << 12, measure, spread);
     return result;
   });
 }
