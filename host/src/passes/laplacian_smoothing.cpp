@@ -65,8 +65,8 @@ class Step {
     for (std::uint32_t v = begin; v < end; ++v) {
       const auto ring = neighbours_.of(VertexId(v));
       const bool boundary = neighbours_.is_boundary(VertexId(v));
-      Vec3& sum = sums.sum[v - begin] = Vec3(0.0f);
-      float& total = sums.total[v - begin] = 0.0f;
+      Vec3 sum(0.0f);
+      float total = 0.0f;
       if (ring.empty() || ((stays_[v / 32] >> (v % 32)) & 1u) != 0) {
         // No weight.
       } else if (boundary && options_.boundary_along_itself) {
@@ -78,6 +78,7 @@ class Step {
       } else {
         add_up_fan(fans, fan, fan + ring.size(), boundary, sum, total);
       }
+      sums.sum[v - begin] = sum, sums.total[v - begin] = total;
       fan += ring.size() + 1;
     }
   }
