@@ -4,10 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include <vkmesh/node_neighbours.h>
 #include <vkmesh/vec.h>
 
 namespace vkmesh::detail {
+
+/// out[f] = area_vector() of the positions of corners 3f, 3f + 1, 3f + 2.
+void area_vectors(std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
+                  std::span<Vec3> out);
+
+/// out[3f + i] = the angle of that triangle at its corner i, as corner_angle() tells it.
+void corner_angles(std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
+                   std::span<float> out);
 
 /// v ← unit_vector(v).
 void to_unit_vectors(std::span<Vec3> vectors);
@@ -19,5 +29,19 @@ void dihedral_angles(std::span<const Vec3> left, std::span<const Vec3> right, st
 /// The largest magnitude among the coordinates, as its bits: those of a NaN or an infinity exceed every
 /// other.
 [[nodiscard]] std::uint32_t largest_magnitude(std::span<const Vec3> vectors);
+
+/// The triangles around some vertices, one after another, and the cotangents at their second and third
+/// corners: triangle t is here[t], around[t], around[t + 1].
+struct Fans {
+  std::vector<Vec3> here, around;
+  std::vector<float> at_q, at_r;  ///< The cotangents at around[t] and at around[t + 1].
+
+  /// The fans of vertices [begin, end), each with one triangle more than there are neighbours: its ring ends
+  /// with its first neighbour again, and what stands after that is no triangle.
+  void gather(const NodeNeighbours& neighbours, std::span<const Vec3> positions, std::uint32_t begin,
+              std::uint32_t end);
+  /// Triangles, and those that are none, but for the last.
+  [[nodiscard]] std::size_t size() const { return here.empty() ? 0 : here.size() - 1; }
+};
 
 }  // namespace vkmesh::detail

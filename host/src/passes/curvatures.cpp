@@ -1,69 +1,100 @@
+#include <algorithm>
+#include <array>
+
 #include <vkmesh/passes/curvatures.h>
 
 #include "catching.h"
 #include "parallel.h"
+#include "passes/blocks.h"
+#include "passes/clones.h"
 #include "passes/pass_input.h"
 
 namespace vkmesh {
 namespace {
 
-// What one triangle gives to the vertex `here`; its other corners are q and r.
-struct Share {
-  Vec3 area_vector{0.0f};
-  float at_q = 0.0f, at_r = 0.0f;  // Cotangents.
-  float angle = 0.0f;
-  float area = 0.0f;  // Eight times.
-};
+// Vertices taken together: few enough to stay in the cache, many enough to fill vector registers.
+constexpr std::uint32_t kBlock = 128;
 
 float squared_distance(Vec3 a, Vec3 b) {
   return squared_length(zero_below(b - a, VKMESH_TINY_LENGTH));
 }
 
-Share share(Vec3 here, Vec3 q, Vec3 r) {
-  Share s;
-  s.area_vector = area_vector(here, q, r);
-  const float twice_area = vector_length(s.area_vector);
-  const float product = corner_product(here, q, r);
-  s.at_q = cotangent(corner_product(q, r, here), twice_area);
-  s.at_r = cotangent(corner_product(r, here, q), twice_area);
-  s.angle = corner_angle(product, twice_area);
-  const float voronoi = zero_below(squared_distance(here, q) * s.at_r, VKMESH_TINY_AREA) +
-                        zero_below(squared_distance(here, r) * s.at_q, VKMESH_TINY_AREA);
-  const bool obtuse_elsewhere = s.at_q < 0.0f || s.at_r < 0.0f;
-  s.area = product < 0.0f ? 2.0f * twice_area : (obtuse_elsewhere ? twice_area : voronoi);
-  return s;
+// What the triangles around some vertices give to these.
+struct Shares {
+  std::vector<Vec3> area_vectors;
+  std::vector<float> angles;
+  std::vector<float> areas;  // Eight times.
+};
+
+VKMESH_CLONES void measure(const detail::Fans& fans, Vec3* __restrict area_vectors, float* __restrict angles,
+                           float* __restrict areas) {
+  const Vec3 *here = fans.here.data(), *around = fans.around.data();
+  const float *at_q = fans.at_q.data(), *at_r = fans.at_r.data();
+  for (std::size_t t = 0, size = fans.size(); t < size; ++t) {
+    const Vec3 normal = area_vector(here[t], around[t], around[t + 1]);
+    const float twice_area = vector_length(normal);
+    const float product = corner_product(here[t], around[t], around[t + 1]);
+    const float voronoi = zero_below(squared_distance(here[t], around[t]) * at_r[t], VKMESH_TINY_AREA) +
+                          zero_below(squared_distance(here[t], around[t + 1]) * at_q[t], VKMESH_TINY_AREA);
+    const bool obtuse_elsewhere = std::min(at_q[t], at_r[t]) < 0.0f;
+    area_vectors[t] = {normal.x, normal.y, normal.z};  // As a whole it would not fill vector registers.
+    angles[t] = corner_angle(product, twice_area);
+    areas[t] = product < 0.0f ? 2.0f * twice_area : (obtuse_elsewhere ? twice_area : voronoi);
+  }
 }
 
-VertexCurvature curvature_at(std::span<const Vec3> p, Vec3 here, std::span<const std::uint32_t> ring,
-                             bool open) {
-  Vec3 q = p[ring.front()];
-  float before = open ? 0.0f : share(here, p[ring.back()], q).at_q;
-  Vec3 laplacian(0.0f), normal(0.0f);
-  float angles = 0.0f, area = 0.0f;
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Vec3 r = p[ring[k + 1 == ring.size() ? 0 : k + 1]];
-    const Share s = open && k + 1 == ring.size() ? Share{} : share(here, q, r);
-    const float weight = zero_below(before + s.at_r, VKMESH_TINY_DIRECTION);
-    laplacian += weight * zero_below(here - q, VKMESH_TINY_LENGTH);
-    normal += s.area_vector;
-    angles += s.angle;
-    area += s.area;
-    before = s.at_q;
-    q = r;
+// What the triangles around each vertex of a block add up to.
+struct Sums {
+  std::array<Vec3, kBlock> laplacian, normal;
+  std::array<float, kBlock> angles, area;
+  std::array<std::uint32_t, kBlock> open;
+
+  void set(std::size_t i, bool is_open) {
+    laplacian[i] = normal[i] = Vec3(0.0f);
+    angles[i] = area[i] = 0.0f;
+    open[i] = is_open ? 1 : 0;
   }
-  VertexCurvature result;
-  const float whole = open ? 1.0f : 2.0f;
-  result.angle_defect = (whole * (2.0f * VKMESH_HALF_PI_HIGH) - angles) + whole * (2.0f * VKMESH_HALF_PI_LOW);
-  result.area = 0.125f * area;
-  if (open) return result;
-  const Vec3 a = unit_vector(laplacian), b = unit_vector(normal);
-  const float along = (a.x * b.x + a.y * b.y) + a.z * b.z;
-  const float size = bounded_quotient(vector_length(laplacian), 0.5f * area, VKMESH_CURVATURE_BOUND,
-                                      VKMESH_CURVATURE_BOUND_INVERSE);
-  result.mean = along < 0.0f ? -size : size;
-  result.gaussian = bounded_quotient(result.angle_defect, result.area, VKMESH_CURVATURE_BOUND,
-                                     VKMESH_CURVATURE_BOUND_INVERSE);
-  return result;
+
+  // Of one vertex; its triangles are [first, end), the last of which is none where it is open.
+  void add_up(std::size_t i, const detail::Fans& fans, const Shares& shares, std::size_t first,
+              std::size_t end) {
+    const Vec3 here = fans.here[first];
+    const std::size_t triangles_end = open[i] != 0 ? end - 1 : end;
+    Vec3 to_neighbours(0.0f), area_vectors(0.0f);
+    float before = open[i] != 0 ? 0.0f : fans.at_q[end - 1];
+    for (std::size_t t = first; t < end; ++t) {
+      const float after = t < triangles_end ? fans.at_r[t] : 0.0f;
+      const float weight = zero_below(before + after, VKMESH_TINY_DIRECTION);
+      to_neighbours += weight * zero_below(here - fans.around[t], VKMESH_TINY_LENGTH);
+      before = fans.at_q[t];
+    }
+    for (std::size_t t = first; t < triangles_end; ++t) {
+      area_vectors += shares.area_vectors[t];
+      angles[i] += shares.angles[t];
+      area[i] += shares.areas[t];
+    }
+    laplacian[i] = to_neighbours, normal[i] = area_vectors;
+  }
+};
+
+VKMESH_CLONES void conclude(const Sums& sums, std::size_t count, VertexCurvature* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool open = sums.open[i] != 0;
+    const float whole = open ? 1.0f : 2.0f;
+    const float defect =
+        (whole * (2.0f * VKMESH_HALF_PI_HIGH) - sums.angles[i]) + whole * (2.0f * VKMESH_HALF_PI_LOW);
+    const float area = 0.125f * sums.area[i];
+    const Vec3 a = unit_vector(sums.laplacian[i]), b = unit_vector(sums.normal[i]);
+    const float along = (a.x * b.x + a.y * b.y) + a.z * b.z;
+    const float size = bounded_quotient(vector_length(sums.laplacian[i]), 0.5f * sums.area[i],
+                                        VKMESH_CURVATURE_BOUND, VKMESH_CURVATURE_BOUND_INVERSE);
+    const float gaussian =
+        bounded_quotient(defect, area, VKMESH_CURVATURE_BOUND, VKMESH_CURVATURE_BOUND_INVERSE);
+    out[i].mean = open ? 0.0f : (along < 0.0f ? -size : size);
+    out[i].gaussian = open ? 0.0f : gaussian;
+    out[i].angle_defect = defect;
+    out[i].area = area;
+  }
 }
 
 }  // namespace
@@ -73,11 +104,27 @@ Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours
   return detail::catching([&]() -> Result<std::vector<VertexCurvature>> {
     VKMESH_CHECK(detail::require_positions(positions, neighbours.vertex_count()));
     std::vector<VertexCurvature> result(positions.size());
-    detail::parallel_ranges(result.size(), 1 << 11, [&](std::size_t begin, std::size_t end) {
-      for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-        const auto ring = neighbours.of(VertexId(v));
-        if (!ring.empty())
-          result[v] = curvature_at(positions, positions[v], ring, neighbours.is_boundary(VertexId(v)));
+    detail::parallel_ranges(result.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+      detail::Fans fans;
+      Shares shares;
+      Sums sums;
+      for (std::size_t first = begin; first < end; first += kBlock) {
+        const auto v = static_cast<std::uint32_t>(first);
+        const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(kBlock, end - first));
+        fans.gather(neighbours, positions, v, v + count);
+        shares.area_vectors.resize(fans.size());
+        shares.angles.resize(fans.size()), shares.areas.resize(fans.size());
+        measure(fans, shares.area_vectors.data(), shares.angles.data(), shares.areas.data());
+        std::size_t fan = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const std::size_t neighbour_count = neighbours.of(VertexId(v + i)).size();
+          sums.set(i, neighbours.is_boundary(VertexId(v + i)));
+          if (neighbour_count > 0) sums.add_up(i, fans, shares, fan, fan + neighbour_count);
+          fan += neighbour_count + 1;
+        }
+        conclude(sums, count, result.data() + first);
+        for (std::uint32_t i = 0; i < count; ++i)
+          if (neighbours.of(VertexId(v + i)).empty()) result[v + i] = {};
       }
     });
     return result;

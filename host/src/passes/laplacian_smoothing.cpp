@@ -1,65 +1,106 @@
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <vkmesh/passes/laplacian_smoothing.h>
 
 #include "catching.h"
 #include "parallel.h"
+#include "passes/blocks.h"
+#include "passes/clones.h"
 #include "passes/pass_input.h"
 #include "passes/smoothing_input.h"
 
 namespace vkmesh {
 namespace {
 
-using Ring = std::span<const std::uint32_t>;
+// Vertices moved together: few enough to stay in the cache, many enough to fill vector registers.
+constexpr std::uint32_t kBlock = 128;
 
-// reciprocal(n) for each number of neighbours that occurs.
-std::vector<float> reciprocals_of_counts(const NodeNeighbours& neighbours) {
-  std::size_t most = 2;
-  for (std::uint32_t v = 0; v < neighbours.vertex_count(); ++v)
-    most = std::max(most, neighbours.of(VertexId(v)).size());
-  std::vector<float> result(most + 1, 0.0f);
-  for (std::size_t n = 1; n <= most; ++n) result[n] = reciprocal(static_cast<float>(n));
-  return result;
-}
-
-Vec3 step_towards(Vec3 here, Vec3 sum, float reciprocal_weight, float factor) {
-  const Vec3 mean = zero_below(sum * reciprocal_weight, VKMESH_TINY_COORDINATE);
-  const Vec3 move = zero_below(factor * (mean - here), VKMESH_TINY_COORDINATE);
-  return zero_below(here + move, VKMESH_TINY_COORDINATE);
-}
-
-// The cotangents at q and r of the triangle here, q, r.
-struct Cotangents {
-  float at_q = 0.0f, at_r = 0.0f;
+// What the neighbours of each vertex of a block add up to, and their weights; a vertex of no weight stays.
+struct Sums {
+  std::array<Vec3, kBlock> sum;
+  std::array<float, kBlock> total;
 };
-Cotangents cotangents(Vec3 here, Vec3 q, Vec3 r) {
-  const float twice_area = vector_length(area_vector(here, q, r));
-  return {cotangent(corner_product(q, r, here), twice_area),
-          cotangent(corner_product(r, here, q), twice_area)};
+
+VKMESH_CLONES void step_towards(const Sums& sums, float factor, std::span<const Vec3> here,
+                                Vec3* __restrict there) {
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const Vec3 mean = zero_below(sums.sum[i] * reciprocal(sums.total[i]), VKMESH_TINY_COORDINATE);
+    const Vec3 move = zero_below(factor * (mean - here[i]), VKMESH_TINY_COORDINATE);
+    const Vec3 moved = zero_below(here[i] + move, VKMESH_TINY_COORDINATE);
+    const bool stays = sums.total[i] == 0.0f;
+    there[i] = {stays ? here[i].x : moved.x, stays ? here[i].y : moved.y, stays ? here[i].z : moved.z};
+  }
 }
 
-// One vertex by cotangent weights; `open`: there is no triangle between the last neighbour and the first.
-Vec3 cotangent_step(std::span<const Vec3> p, Vec3 here, Ring ring, bool open, float factor) {
-  const Vec3 last = p[ring.back()];
-  Vec3 q = p[ring.front()];
-  // The angle opposite each edge in the triangle before it, and in the one after it.
-  float before = open ? 0.0f : cotangents(here, last, q).at_q;
-  Vec3 sum(0.0f);
-  float total = 0.0f;
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Vec3 r = p[ring[k + 1 == ring.size() ? 0 : k + 1]];
-    Cotangents after = cotangents(here, q, r);
-    if (open && k + 1 == ring.size()) after = {};
-    const float both = before + after.at_r;
-    const float weight = both > VKMESH_TINY_WEIGHT ? both : 0.0f;
-    sum += zero_below(weight * q, VKMESH_TINY_COORDINATE);
-    total += weight;
-    before = after.at_q;
-    q = r;
+class Step {
+ public:
+  Step(const NodeNeighbours& neighbours, const LaplacianSmoothingOptions& options)
+      : neighbours_(neighbours), options_(options), stays_(options.locked.begin(), options.locked.end()) {
+    stays_.resize(neighbours.boundary_bits.size(), 0);
+    if (options.fix_boundary)
+      for (std::size_t i = 0; i < stays_.size(); ++i) stays_[i] |= neighbours.boundary_bits[i];
   }
-  return total == 0.0f ? here : step_towards(here, sum, reciprocal(total), factor);
-}
+
+  void operator()(std::span<const Vec3> source, float factor, std::span<Vec3> target) const {
+    detail::parallel_ranges(source.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+      Sums sums;
+      detail::Fans fans;
+      for (std::size_t first = begin; first < end; first += kBlock) {
+        const std::size_t count = std::min<std::size_t>(kBlock, end - first);
+        add_up(source, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first + count), fans,
+               sums);
+        step_towards(sums, factor, source.subspan(first, count), target.data() + first);
+      }
+    });
+  }
+
+ private:
+  void add_up(std::span<const Vec3> p, std::uint32_t begin, std::uint32_t end, detail::Fans& fans,
+              Sums& sums) const {
+    const bool uniform = options_.weights == SmoothingWeights::kUniform;
+    if (!uniform) fans.gather(neighbours_, p, begin, end);
+    std::size_t fan = 0;
+    for (std::uint32_t v = begin; v < end; ++v) {
+      const auto ring = neighbours_.of(VertexId(v));
+      const bool boundary = neighbours_.is_boundary(VertexId(v));
+      Vec3 sum(0.0f);
+      float total = 0.0f;
+      if (ring.empty() || ((stays_[v / 32] >> (v % 32)) & 1u) != 0) {
+        // No weight.
+      } else if (boundary && options_.boundary_along_itself) {
+        sum = (sum + p[ring.front()]) + p[ring.back()];
+        total = 2.0f;
+      } else if (uniform) {
+        for (const std::uint32_t n : ring) sum += p[n];
+        total = static_cast<float>(ring.size());
+      } else {
+        add_up_fan(fans, fan, fan + ring.size(), boundary, sum, total);
+      }
+      sums.sum[v - begin] = sum, sums.total[v - begin] = total;
+      fan += ring.size() + 1;
+    }
+  }
+
+  // One vertex by cotangent weights; `open`: there is no triangle between the last neighbour and the first.
+  static void add_up_fan(const detail::Fans& fans, std::size_t first, std::size_t end, bool open, Vec3& sum,
+                         float& total) {
+    // The angle opposite each edge in the triangle before it, and in the one after it.
+    float before = open ? 0.0f : fans.at_q[end - 1];
+    for (std::size_t t = first; t < end; ++t) {
+      const float both = before + (open && t + 1 == end ? 0.0f : fans.at_r[t]);
+      const float weight = both > VKMESH_TINY_WEIGHT ? both : 0.0f;
+      sum += zero_below(weight * fans.around[t], VKMESH_TINY_COORDINATE);
+      total += weight;
+      before = fans.at_q[t];
+    }
+  }
+
+  const NodeNeighbours& neighbours_;
+  const LaplacianSmoothingOptions& options_;
+  std::vector<std::uint32_t> stays_;  // Bit by bit, as in options.locked.
+};
 
 }  // namespace
 
@@ -77,34 +118,11 @@ Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
     std::vector<Vec3> source(positions.size());
     VKMESH_CHECK(prepare_positions(positions, source));
     std::vector<Vec3> target(source.size());
-    const std::vector<float> reciprocals = reciprocals_of_counts(neighbours);
-    const bool uniform = options.weights == SmoothingWeights::kUniform;
-    const auto stays = [&](std::uint32_t v, bool boundary) {
-      return (boundary && options.fix_boundary) ||
-             (!locked.empty() && ((locked[v / 32] >> (v % 32)) & 1u) != 0);
-    };
+    const Step move_all(neighbours, options);
     const auto step = [&](std::uint32_t i, float factor) -> Result<void> {
       if (progress && !progress(static_cast<double>(i) / options.iterations))
         return fail(ErrorCode::kInterrupted, "smoothing was interrupted");
-      detail::parallel_ranges(source.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-        for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-          const Vec3 here = source[v];
-          const Ring around = neighbours.of(VertexId(v));
-          const bool boundary = neighbours.is_boundary(VertexId(v));
-          if (around.empty() || stays(v, boundary)) {
-            target[v] = here;
-          } else if (boundary && options.boundary_along_itself) {
-            const Vec3 sum = (Vec3(0.0f) + source[around.front()]) + source[around.back()];
-            target[v] = step_towards(here, sum, reciprocals[2], factor);
-          } else if (uniform) {
-            Vec3 sum(0.0f);
-            for (const std::uint32_t n : around) sum += source[n];
-            target[v] = step_towards(here, sum, reciprocals[around.size()], factor);
-          } else {
-            target[v] = cotangent_step(source, here, around, boundary, factor);
-          }
-        }
-      });
+      move_all(source, factor, target);
       std::swap(source, target);
       return {};
     };

@@ -206,10 +206,12 @@ namespace detail {
 /// The angle between two unit vectors, in [0, π], within 8 ULP; 0 where either is the zero vector.
 /// W. Kahan's 2 atan2(|a − b|, |a + b|): accurate for small and for nearly straight angles.
 [[nodiscard]] inline float angle_between(Vec3 a, Vec3 b) {
-  if (squared_length(a) == 0.0f || squared_length(b) == 0.0f) return 0.0f;
+  const float length_a = squared_length(a), length_b = squared_length(b);
+  // No branch, so that a loop of these fills vector registers.
+  const bool defined = (length_a != 0.0f) & (length_b != 0.0f);
   const float apart = root(squared_length(zero_below(a - b, VKMESH_TINY_LENGTH)));
   const float along = root(squared_length(zero_below(a + b, VKMESH_TINY_LENGTH)));
-  return 2.0f * first_quadrant_angle(apart, along);
+  return defined ? 2.0f * first_quadrant_angle(apart, along) : 0.0f;
 }
 
 /// angle_between(left, right), the normals of the faces to the left and the right of an edge that runs along
