@@ -34,8 +34,9 @@ Result<Smoothed> by_steps(Job& job, Backend& backend, const HalfEdgeMesh& mesh, 
   steps.mu = options.method == "laplacian" ? 0.0f
              : options.mu                  ? *options.mu
                                            : -std::min(1.0f, lambda / (1.0f - 0.1f * lambda));
-  steps.fix_boundary = options.boundary == "fixed";
-  steps.boundary_along_itself = options.boundary == "along";
+  steps.boundary = options.boundary == "fixed"   ? SmoothingBoundary::kFixed
+                   : options.boundary == "along" ? SmoothingBoundary::kAlongItself
+                                                 : SmoothingBoundary::kFree;
   job.json()["result"] = {{"method", options.method},
                           {"lambda", steps.lambda},
                           {"mu", steps.mu},

@@ -67,12 +67,12 @@ struct LaplacianSmoothingParams {
   VKMESH_FLOATS source;        ///< 3 a vertex
   VKMESH_FLOATS target;        ///< 3 a vertex: written
   VKMESH_FLOAT factor;         ///< λ or μ
-  VKMESH_UINT boundary_rule;
+  VKMESH_UINT boundary_rule;  ///< SmoothingBoundary
 };
 
-#define VKMESH_BOUNDARY_FREE 0
-#define VKMESH_BOUNDARY_FIXED 1
-#define VKMESH_BOUNDARY_ALONG_ITSELF 2
+// Of SmoothingBoundary.
+#define VKMESH_BOUNDARY_FIXED 0
+#define VKMESH_BOUNDARY_ALONG_ITSELF 1
 
 /// dihedral_angles.comp: i is a half-edge.
 struct DihedralAnglesParams {

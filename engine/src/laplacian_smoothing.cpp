@@ -25,9 +25,9 @@ Result<void> record_laplacian_smoothing(Recorder& recorder, DeviceMesh& mesh,
   params.neighbour_ids = mesh.neighbour_ids().address();
   params.boundary_bits = mesh.boundary_bits().address();
   params.locked_bits = mesh.locked_bits().address();
-  params.boundary_rule = options.fix_boundary            ? VKMESH_BOUNDARY_FIXED
-                         : options.boundary_along_itself ? VKMESH_BOUNDARY_ALONG_ITSELF
-                                                         : VKMESH_BOUNDARY_FREE;
+  static_assert(VKMESH_BOUNDARY_FIXED == static_cast<int>(SmoothingBoundary::kFixed) &&
+                VKMESH_BOUNDARY_ALONG_ITSELF == static_cast<int>(SmoothingBoundary::kAlongItself));
+  params.boundary_rule = static_cast<std::uint32_t>(options.boundary);
   const Buffer* source = &mesh.positions();
   const Buffer* target = &mesh.smoothed_positions();
   const auto step = [&](std::uint32_t, float factor) -> Result<void> {

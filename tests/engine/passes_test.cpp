@@ -170,15 +170,15 @@ void check_exact(const IndexedFaceSet& set) {
   std::mt19937 random(23);
   for (std::uint32_t& word : locks) word = static_cast<std::uint32_t>(random() & random());
   for (const LaplacianSmoothingOptions& options :
-       {LaplacianSmoothingOptions{.lambda = 0.63f, .iterations = 3, .fix_boundary = false, .mu = -0.67f},
-        LaplacianSmoothingOptions{.iterations = 3, .fix_boundary = false, .boundary_along_itself = true},
+       {LaplacianSmoothingOptions{
+            .lambda = 0.63f, .iterations = 3, .boundary = SmoothingBoundary::kFree, .mu = -0.67f},
+        LaplacianSmoothingOptions{.iterations = 3, .boundary = SmoothingBoundary::kAlongItself},
         LaplacianSmoothingOptions{
             .lambda = 0.9f, .iterations = 4, .weights = SmoothingWeights::kCotangent, .mu = -0.95f},
         LaplacianSmoothingOptions{
-            .iterations = 3, .fix_boundary = false, .weights = SmoothingWeights::kCotangent},
+            .iterations = 3, .boundary = SmoothingBoundary::kFree, .weights = SmoothingWeights::kCotangent},
         LaplacianSmoothingOptions{.iterations = 3,
-        .fix_boundary = false,
-        .boundary_along_itself = true,
+        .boundary = SmoothingBoundary::kAlongItself,
         .weights = SmoothingWeights::kCotangent}})
     for (const bool locked : {false, true}) {
       const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
@@ -191,8 +191,8 @@ void check_exact(const IndexedFaceSet& set) {
                         require(laplacian_smoothing(neighbours, set.points, on_host))) == 0);
     }
   for (const LaplacianSmoothingOptions& options :
-       {LaplacianSmoothingOptions{.lambda = 0.5f, .iterations = 1, .fix_boundary = true},
-        LaplacianSmoothingOptions{.lambda = 0.37f, .iterations = 10, .fix_boundary = false}}) {
+       {LaplacianSmoothingOptions{.lambda = 0.5f, .iterations = 1, .boundary = SmoothingBoundary::kFixed},
+        LaplacianSmoothingOptions{.lambda = 0.37f, .iterations = 10, .boundary = SmoothingBoundary::kFree}}) {
     DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points, kAllPasses));
     Recorder recorder = require(Recorder::create(context));
     require_done(record_triangle_normals(recorder, device));

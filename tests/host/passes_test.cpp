@@ -152,9 +152,10 @@ TEST_CASE("one smoothing step agrees with double precision") {
   for (const IndexedFaceSet& set : noisy_shapes()) {
     const HalfEdgeMesh mesh = test::half_edges(set);
     const NodeNeighbours neighbours = node_neighbours(mesh).value();
-    for (const bool fix : {true, false}) {
-      const auto smoothed =
-          laplacian_smoothing(neighbours, set.points, {.lambda = 0.3f, .iterations = 1, .fix_boundary = fix});
+    for (const SmoothingBoundary boundary : {SmoothingBoundary::kFixed, SmoothingBoundary::kFree}) {
+      const bool fix = boundary == SmoothingBoundary::kFixed;
+      const auto smoothed = laplacian_smoothing(neighbours, set.points,
+                                                {.lambda = 0.3f, .iterations = 1, .boundary = boundary});
       REQUIRE(smoothed);
       for (std::uint32_t v = 0; v < set.points.size(); ++v) {
         DVec3 expected(set.points[v]);
@@ -197,9 +198,11 @@ DVec3 cotangent_mean(const IndexedFaceSet& set, std::uint32_t v) {
 TEST_CASE("one smoothing step by cotangents agrees with double precision") {
   for (const IndexedFaceSet& set : noisy_shapes()) {
     const HalfEdgeMesh mesh = test::half_edges(set);
-    const auto smoothed = laplacian_smoothing(
-        node_neighbours(mesh).value(), set.points,
-        {.lambda = 0.3f, .iterations = 1, .fix_boundary = false, .weights = SmoothingWeights::kCotangent});
+    const auto smoothed = laplacian_smoothing(node_neighbours(mesh).value(), set.points,
+                                              {.lambda = 0.3f,
+                                               .iterations = 1,
+                                               .boundary = SmoothingBoundary::kFree,
+                                               .weights = SmoothingWeights::kCotangent});
     REQUIRE(smoothed);
     for (std::uint32_t v = 0; v < set.points.size(); ++v) {
       const DVec3 here(set.points[v]);
@@ -292,8 +295,7 @@ TEST_CASE("smoothing: locked vertices stay, the boundary moves along itself") {
   for (const SmoothingWeights weights : {SmoothingWeights::kUniform, SmoothingWeights::kCotangent}) {
     LaplacianSmoothingOptions options{.lambda = 0.4f,
                                       .iterations = 1,
-                                      .fix_boundary = false,
-                                      .boundary_along_itself = true,
+                                      .boundary = SmoothingBoundary::kAlongItself,
                                       .weights = weights,
                                       .locked = locked};
     const auto smoothed = laplacian_smoothing(neighbours, set.points, options).value();

@@ -157,33 +157,36 @@ Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh, std::span<
     const auto scaled = [&](std::size_t h) {
       return zero_below((positions[corners[h]] - options.centre) * options.scale, VKMESH_TINY_DIRECTION);
     };
-    // The planes of a block of faces by all cores, then their sums in the order in which the shader gathers.
-    constexpr std::size_t kBlock = 1 << 16;
-    std::vector<VertexQuadric> result(positions.size(), VertexQuadric{}),
-        planes(std::min(kBlock, mesh.face_count()));
-    std::vector<Vec3> normals(planes.size());
-    for (std::size_t first = 0; first < mesh.face_count(); first += kBlock) {
-      const std::size_t count = std::min(kBlock, mesh.face_count() - first);
-      detail::parallel_ranges(count, 1 << 12, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-          const std::size_t h = 3 * (first + f);
-          const Vec3 area = area_vector(scaled(h), scaled(h + 1), scaled(h + 2));
-          normals[f] = unit_vector(area);
-          planes[f] = plane(normals[f], 0.5f * vector_length(area));
-        }
-      });
-      for (std::size_t f = 0; f < count; ++f)
+    std::vector<VertexQuadric> result(positions.size(), VertexQuadric{});
+    // The planes of a block of faces on any core, then their sums in the order in which the shader gathers.
+    struct Block {
+      std::vector<Vec3> normals;
+      std::vector<VertexQuadric> planes;
+    };
+    const auto make = [&](std::size_t begin, std::size_t end, Block& block) {
+      block.normals.resize(end - begin);
+      block.planes.resize(end - begin);
+      for (std::size_t f = begin; f < end; ++f) {
+        const Vec3 area = area_vector(scaled(3 * f), scaled(3 * f + 1), scaled(3 * f + 2));
+        block.normals[f - begin] = unit_vector(area);
+        block.planes[f - begin] = plane(block.normals[f - begin], 0.5f * vector_length(area));
+      }
+    };
+    const auto add_up = [&](std::size_t begin, std::size_t end, const Block& block) {
+      for (std::size_t f = begin; f < end; ++f)
         for (std::size_t i = 0; i < 3; ++i) {
-          const std::size_t h = 3 * (first + f) + i, next = 3 * (first + f) + (i + 1) % 3,
-                            previous = 3 * (first + f) + (i + 2) % 3;
+          const std::size_t h = 3 * f + i, next = 3 * f + (i + 1) % 3, previous = 3 * f + (i + 2) % 3;
+          const auto boundary = [&](std::size_t from, std::size_t to) {
+            return boundary_plane(scaled(from), scaled(to), block.normals[f - begin],
+                                  options.boundary_weight);
+          };
           VertexQuadric& sum = result[corners[h]];
-          add(sum, planes[f]);
-          if (twins[h] == kInvalid)
-            add(sum, boundary_plane(scaled(h), scaled(next), normals[f], options.boundary_weight));
-          if (twins[previous] == kInvalid)
-            add(sum, boundary_plane(scaled(previous), scaled(h), normals[f], options.boundary_weight));
+          add(sum, block.planes[f - begin]);
+          if (twins[h] == kInvalid) add(sum, boundary(h, next));
+          if (twins[previous] == kInvalid) add(sum, boundary(previous, h));
         }
-    }
+    };
+    detail::parallel_in_order<Block>(mesh.face_count(), 1 << 11, make, add_up);
     return result;
   });
 }

@@ -39,7 +39,7 @@ class Step {
   Step(const NodeNeighbours& neighbours, const LaplacianSmoothingOptions& options)
       : neighbours_(neighbours), options_(options), stays_(options.locked.begin(), options.locked.end()) {
     stays_.resize(neighbours.boundary_bits.size(), 0);
-    if (options.fix_boundary)
+    if (options.boundary == SmoothingBoundary::kFixed)
       for (std::size_t i = 0; i < stays_.size(); ++i) stays_[i] |= neighbours.boundary_bits[i];
   }
 
@@ -69,7 +69,7 @@ class Step {
       float total = 0.0f;
       if (ring.empty() || ((stays_[v / 32] >> (v % 32)) & 1u) != 0) {
         // No weight.
-      } else if (boundary && options_.boundary_along_itself) {
+      } else if (boundary && options_.boundary == SmoothingBoundary::kAlongItself) {
         sum = (sum + p[ring.front()]) + p[ring.back()];
         total = 2.0f;
       } else if (uniform) {

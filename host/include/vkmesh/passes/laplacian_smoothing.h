@@ -22,13 +22,17 @@ enum class SmoothingWeights : std::uint8_t {
   kCotangent,
 };
 
+/// What boundary vertices do.
+enum class SmoothingBoundary : std::uint8_t {
+  kFixed,        ///< They stay where they are.
+  kAlongItself,  ///< They move towards the mean of their two neighbours on the boundary.
+  kFree,         ///< They move as any other.
+};
+
 struct LaplacianSmoothingOptions {
   float lambda = 0.5f;            ///< Share of the way to the neighbours' mean, in [0, 1]. Default 0.5.
   std::uint32_t iterations = 10;  ///< Jacobi steps: each reads only the positions before it. Default 10.
-  bool fix_boundary = true;       ///< Boundary vertices stay where they are. Default true.
-  /// Boundary vertices, where not fixed, move along the boundary: to the mean of their two neighbours on it.
-  /// Otherwise they are as free as any. Default false.
-  bool boundary_along_itself = false;
+  SmoothingBoundary boundary = SmoothingBoundary::kFixed;  ///< Default fixed.
   SmoothingWeights weights = SmoothingWeights::kUniform;
   /// In [−1, 0]. Unless 0, each iteration is a step by λ and a step by μ, which together keep low frequencies
   /// (G. Taubin, "A signal processing approach to fair surface design", 1995): μ a little beyond −λ, such as
