@@ -11,7 +11,7 @@ cgal=data/cgal
 out=docs/images
 mkdir -p "$out"
 
-"$vkmesh" smooth "$dragon" "$work/smooth.ply" --iterations 30 --quiet
+"$vkmesh" smooth "$dragon" "$work/smooth.ply" --method laplacian --iterations 30 --quiet
 "$vkmesh" simplify "$dragon" "$work/tenth.ply" --ratio 0.1 --quiet
 "$vkmesh" simplify "$dragon" "$work/hundredth.ply" --ratio 0.01 --quiet
 "$vkmesh" render "$dragon" "$dragon" "$work/smooth.ply" "$work/tenth.ply" "$work/hundredth.ply" "$work/hundredth.ply" \
@@ -28,3 +28,22 @@ mkdir -p "$out"
   --size 360x360 --columns 3 --frame each --style splats,splats,points --color none,segment_index,normal
 "$vkmesh" render "$cgal/meshes/elephant-with-holes.off" "$cgal/meshes/blobby-shuffled.off" "$out/broken.png" \
   --size 480x400 --frame each --style flat --show-flipped --show-boundary --show-non-manifold
+
+# Smoothing, on surfaces with noise of a given standard deviation.
+noisy() { "$vkmesh" convert "$1" "$work/clean.off" --quiet && awk -v sigma="$2" -f docs/noise.awk "$work/clean.off" >"$3"; }
+noisy data/dragon/dragon_vrip_res2.ply.gz 0.0002 "$work/noisy.off"
+"$vkmesh" smooth "$work/noisy.off" "$work/laplacian.ply" --method laplacian --quiet
+"$vkmesh" smooth "$work/noisy.off" "$work/taubin.ply" --quiet
+"$vkmesh" smooth "$work/noisy.off" "$work/noise.ply" --method bilateral --spatial 2 --influence 0.2 --quiet
+"$vkmesh" smooth "$work/noisy.off" "$work/small.ply" --method bilateral --spatial 2 --influence 4 --quiet
+"$vkmesh" smooth "$work/noisy.off" "$work/large.ply" --method bilateral --spatial 4 --influence 4 --quiet
+"$vkmesh" render "$work/noisy.off" "$work/laplacian.ply" "$work/taubin.ply" "$work/noise.ply" "$work/small.ply" \
+  "$work/large.ply" "$out/smoothing.png" --size 420x330 --columns 3 --caption "scan with noise" \
+  --caption "Laplacian, 10 steps" --caption "Taubin, 10 iterations" --caption "bilateral, 2 and 0.2" \
+  --caption "bilateral, 2 and 4" --caption "bilateral, 4 and 4"
+noisy "$cgal/meshes/fandisk.off" 0.002 "$work/noisy.off"
+"$vkmesh" smooth "$work/noisy.off" "$work/laplacian.ply" --method laplacian --quiet
+"$vkmesh" smooth "$work/noisy.off" "$work/bilateral.ply" --method bilateral --spatial 2 --influence 0.3 --quiet
+"$vkmesh" render "$work/noisy.off" "$work/laplacian.ply" "$work/bilateral.ply" "$out/smoothing_creases.png" \
+  --size 420x360 --columns 3 --style flat --caption "with noise" --caption "Laplacian, 10 steps" \
+  --caption "bilateral, 2 and 0.3"
