@@ -1,69 +1,133 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include <vkmesh/passes/curvatures.h>
 
 #include "catching.h"
-#include "parallel.h"
+#include "passes/clones.h"
 #include "passes/pass_input.h"
+#include "passes/ring_groups.h"
 
 namespace vkmesh {
 namespace {
 
-// What one triangle gives to the vertex `here`; its other corners are q and r.
-struct Share {
-  Vec3 area_vector{0.0f};
-  float at_q = 0.0f, at_r = 0.0f;  // Cotangents.
-  float angle = 0.0f;
-  float area = 0.0f;  // Eight times.
-};
+using detail::RingGroup, detail::RingPoints;
+constexpr std::size_t kMost = RingGroup::kMost;
 
 float squared_distance(Vec3 a, Vec3 b) {
   return squared_length(zero_below(b - a, VKMESH_TINY_LENGTH));
 }
 
-Share share(Vec3 here, Vec3 q, Vec3 r) {
-  Share s;
-  s.area_vector = area_vector(here, q, r);
-  const float twice_area = vector_length(s.area_vector);
-  const float product = corner_product(here, q, r);
-  s.at_q = cotangent(corner_product(q, r, here), twice_area);
-  s.at_r = cotangent(corner_product(r, here, q), twice_area);
-  s.angle = corner_angle(product, twice_area);
-  const float voronoi = zero_below(squared_distance(here, q) * s.at_r, VKMESH_TINY_AREA) +
-                        zero_below(squared_distance(here, r) * s.at_q, VKMESH_TINY_AREA);
-  const bool obtuse_elsewhere = s.at_q < 0.0f || s.at_r < 0.0f;
-  s.area = product < 0.0f ? 2.0f * twice_area : (obtuse_elsewhere ? twice_area : voronoi);
-  return s;
+// What triangles give to their corners `here`; the other corners are q and r.
+struct Shares {
+  RingPoints area_vector = {};
+  float at_q[kMost] = {}, at_r[kMost] = {};  // Cotangents.
+  float angle[kMost] = {};
+  float area[kMost] = {};  // Eight times.
+};
+VKMESH_CLONES void compute(Shares& out, const RingPoints& here, const RingPoints& q, const RingPoints& r,
+                           std::size_t count) {
+  Shares s;
+  float twice_areas[kMost], products[kMost];
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 area = area_vector(here[i], q[i], r[i]);
+    s.area_vector.set(i, area);
+    twice_areas[i] = vector_length(area);
+    products[i] = corner_product(here[i], q[i], r[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) s.angle[i] = corner_angle(products[i], twice_areas[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    s.at_q[i] = cotangent(corner_product(q[i], r[i], here[i]), twice_areas[i]);
+    s.at_r[i] = cotangent(corner_product(r[i], here[i], q[i]), twice_areas[i]);
+  }
+  float voronoi[kMost];
+  for (std::size_t i = 0; i < count; ++i)
+    voronoi[i] = zero_below(squared_distance(here[i], q[i]) * s.at_r[i], VKMESH_TINY_AREA) +
+                 zero_below(squared_distance(here[i], r[i]) * s.at_q[i], VKMESH_TINY_AREA);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float not_here = std::min(s.at_q[i], s.at_r[i]) < 0.0f ? twice_areas[i] : voronoi[i];
+    s.area[i] = products[i] < 0.0f ? 2.0f * twice_areas[i] : not_here;
+  }
+  out = s;
 }
 
-VertexCurvature curvature_at(std::span<const Vec3> p, Vec3 here, std::span<const std::uint32_t> ring,
-                             bool open) {
-  Vec3 q = p[ring.front()];
-  float before = open ? 0.0f : share(here, p[ring.back()], q).at_q;
-  Vec3 laplacian(0.0f), normal(0.0f);
-  float angles = 0.0f, area = 0.0f;
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Vec3 r = p[ring[k + 1 == ring.size() ? 0 : k + 1]];
-    const Share s = open && k + 1 == ring.size() ? Share{} : share(here, q, r);
-    const float weight = zero_below(before + s.at_r, VKMESH_TINY_DIRECTION);
-    laplacian += weight * zero_below(here - q, VKMESH_TINY_LENGTH);
-    normal += s.area_vector;
-    angles += s.angle;
-    area += s.area;
-    before = s.at_q;
+// Sums around the vertices `here`.
+struct Sums {
+  RingPoints laplacian = {}, normal = {};
+  float angles[kMost] = {}, area[kMost] = {};
+};
+// The edge to q, between a triangle and the one after it.
+VKMESH_CLONES void add(Sums& out, const RingPoints& here, const RingPoints& q, const Shares& before,
+                       const Shares& after, std::size_t count) {
+  Sums sums = out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float weight = zero_below(before.at_q[i] + after.at_r[i], VKMESH_TINY_DIRECTION);
+    sums.laplacian.set(i, sums.laplacian[i] + weight * zero_below(here[i] - q[i], VKMESH_TINY_LENGTH));
+    sums.normal.set(i, sums.normal[i] + after.area_vector[i]);
+    sums.angles[i] += after.angle[i];
+    sums.area[i] += after.area[i];
+  }
+  out = sums;
+}
+
+struct Curvatures {
+  std::array<float, kMost> mean, gaussian, angle_defect, area;
+};
+// `whole`: how many half turns there are around each.
+VKMESH_CLONES void compute(Curvatures& out, const Sums& sums, float whole, std::size_t count) {
+  Curvatures c;
+  for (std::size_t i = 0; i < count; ++i) {
+    c.angle_defect[i] =
+        (whole * (2.0f * VKMESH_HALF_PI_HIGH) - sums.angles[i]) + whole * (2.0f * VKMESH_HALF_PI_LOW);
+    c.area[i] = 0.125f * sums.area[i];
+  }
+  float along[kMost], size[kMost];
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 a = unit_vector(sums.laplacian[i]), b = unit_vector(sums.normal[i]);
+    along[i] = (a.x * b.x + a.y * b.y) + a.z * b.z;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    size[i] = bounded_quotient(vector_length(sums.laplacian[i]), 0.5f * sums.area[i], VKMESH_CURVATURE_BOUND,
+                               VKMESH_CURVATURE_BOUND_INVERSE);
+    c.gaussian[i] = bounded_quotient(c.angle_defect[i], c.area[i], VKMESH_CURVATURE_BOUND,
+                                     VKMESH_CURVATURE_BOUND_INVERSE);
+  }
+  for (std::size_t i = 0; i < count; ++i) c.mean[i] = along[i] < 0.0f ? -size[i] : size[i];
+  out = c;
+}
+
+void curvatures_of(const NodeNeighbours& neighbours, const RingGroup& group, const Vec3* positions,
+                   VertexCurvature* out) {
+  const std::size_t count = group.vertices.size();
+  RingPoints here, q, r;
+  here.take(group, positions);
+  q.take(group, positions, neighbours, 0);
+  // The triangle between the last neighbour and the first, which is none on the boundary.
+  Shares last;
+  if (!group.boundary) {
+    r.take(group, positions, neighbours, group.valence - 1);
+    compute(last, here, r, q, count);
+  }
+  // Those before and after each edge.
+  Shares before = last, after;
+  Sums sums;
+  for (std::uint32_t k = 0; k < group.valence; ++k) {
+    if (k + 1 < group.valence) {
+      r.take(group, positions, neighbours, k + 1);
+      compute(after, here, q, r, count);
+    } else {
+      after = last;
+    }
+    add(sums, here, q, before, after, count);
+    std::swap(before, after);
     q = r;
   }
-  VertexCurvature result;
-  const float whole = open ? 1.0f : 2.0f;
-  result.angle_defect = (whole * (2.0f * VKMESH_HALF_PI_HIGH) - angles) + whole * (2.0f * VKMESH_HALF_PI_LOW);
-  result.area = 0.125f * area;
-  if (open) return result;
-  const Vec3 a = unit_vector(laplacian), b = unit_vector(normal);
-  const float along = (a.x * b.x + a.y * b.y) + a.z * b.z;
-  const float size = bounded_quotient(vector_length(laplacian), 0.5f * area, VKMESH_CURVATURE_BOUND,
-                                      VKMESH_CURVATURE_BOUND_INVERSE);
-  result.mean = along < 0.0f ? -size : size;
-  result.gaussian = bounded_quotient(result.angle_defect, result.area, VKMESH_CURVATURE_BOUND,
-                                     VKMESH_CURVATURE_BOUND_INVERSE);
-  return result;
+  Curvatures c;
+  compute(c, sums, group.boundary ? 1.0f : 2.0f, count);
+  if (group.boundary) c.mean = c.gaussian = {};
+  for (std::size_t i = 0; i < count; ++i)
+    out[group.vertices[i]] = {c.mean[i], c.gaussian[i], c.angle_defect[i], c.area[i]};
 }
 
 }  // namespace
@@ -73,13 +137,9 @@ Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours
   return detail::catching([&]() -> Result<std::vector<VertexCurvature>> {
     VKMESH_CHECK(detail::require_positions(positions, neighbours.vertex_count()));
     std::vector<VertexCurvature> result(positions.size());
-    detail::parallel_ranges(result.size(), 1 << 11, [&](std::size_t begin, std::size_t end) {
-      for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-        const auto ring = neighbours.of(VertexId(v));
-        if (!ring.empty())
-          result[v] = curvature_at(positions, positions[v], ring, neighbours.is_boundary(VertexId(v)));
-      }
-    });
+    const detail::RingGroups groups(neighbours);
+    groups.for_each(
+        [&](const RingGroup& group) { curvatures_of(neighbours, group, positions.data(), result.data()); });
     return result;
   });
 }
