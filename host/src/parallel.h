@@ -2,11 +2,15 @@
 // the number of threads.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/task_arena.h>
 
 namespace vkmesh::detail {
 
@@ -32,6 +36,34 @@ Part parallel_sum(std::size_t count, std::size_t grain, Body&& body) {
         left += right;
         return left;
       });
+}
+
+/// For consecutive ranges of `grain` elements that cover [0, count): make(begin, end, block) on any threads,
+/// and then finish(begin, end, block) on one thread at a time, in the order of the ranges, while others make
+/// what follows. `Block` is default-made and used again for later ranges.
+template <class Block, class Make, class Finish>
+void parallel_in_order(std::size_t count, std::size_t grain, Make&& make, Finish&& finish) {
+  const std::size_t ranges = (count + grain - 1) / grain;
+  // As ranges finish in order, the block of a range is free again when the one `in_flight` later begins.
+  const std::size_t in_flight =
+      std::min(ranges, 3 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  if (ranges == 0) return;
+  std::vector<Block> blocks(in_flight);
+  std::size_t next = 0;
+  const auto call = [&](auto& body, std::size_t range) {
+    body(range * grain, std::min((range + 1) * grain, count), blocks[range % in_flight]);
+  };
+  tbb::parallel_pipeline(
+      in_flight,
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& control) {
+        if (next == ranges) control.stop();
+        return next++;
+      }) & tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, [&](std::size_t range) {
+        call(make, range);
+        return range;
+      }) & tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, [&](std::size_t range) {
+        call(finish, range);
+      }));
 }
 
 }  // namespace vkmesh::detail

@@ -9,6 +9,14 @@
 
 namespace vkmesh::detail {
 
+/// out[f] = area_vector() of the positions of corners 3f, 3f + 1, 3f + 2.
+void area_vectors(std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
+                  std::span<Vec3> out);
+
+/// out[3f + i] = the angle of that triangle at its corner i, as corner_angle() tells it.
+void corner_angles(std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
+                   std::span<float> out);
+
 /// v ← unit_vector(v).
 void to_unit_vectors(std::span<Vec3> vectors);
 

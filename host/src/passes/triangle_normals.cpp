@@ -11,13 +11,12 @@ Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh, std::span<c
   return detail::catching([&]() -> Result<std::vector<Vec3>> {
     VKMESH_CHECK(detail::require_triangles(mesh, "triangle_normals"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
-    const std::span<const Vec3> p = positions;
     const auto corners = mesh.origins();
     std::vector<Vec3> normals(mesh.face_count());
     detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t f = begin; f < end; ++f)
-        normals[f] = area_vector(p[corners[3 * f]], p[corners[3 * f + 1]], p[corners[3 * f + 2]]);
-      detail::to_unit_vectors(std::span(normals).subspan(begin, end - begin));
+      const auto block = std::span(normals).subspan(begin, end - begin);
+      detail::area_vectors(positions, corners.subspan(3 * begin, 3 * block.size()), block);
+      detail::to_unit_vectors(block);
     });
     return normals;
   });
