@@ -5,6 +5,7 @@
 #include <vkmesh/passes/curvatures.h>
 
 #include "catching.h"
+#include "large_pages.h"
 #include "passes/clones.h"
 #include "passes/pass_input.h"
 #include "passes/ring_groups.h"
@@ -136,7 +137,7 @@ Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours
                                                 std::span<const Vec3> positions) {
   return detail::catching([&]() -> Result<std::vector<VertexCurvature>> {
     VKMESH_CHECK(detail::require_positions(positions, neighbours.vertex_count()));
-    std::vector<VertexCurvature> result(positions.size());
+    std::vector<VertexCurvature> result = detail::large_vector<VertexCurvature>(positions.size());
     const detail::RingGroups groups(neighbours);
     groups.for_each(
         [&](const RingGroup& group) { curvatures_of(neighbours, group, positions.data(), result.data()); });

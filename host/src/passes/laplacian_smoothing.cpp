@@ -5,6 +5,7 @@
 #include <vkmesh/passes/laplacian_smoothing.h>
 
 #include "catching.h"
+#include "large_pages.h"
 #include "passes/clones.h"
 #include "passes/pass_input.h"
 #include "passes/ring_groups.h"
@@ -156,9 +157,10 @@ Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
       return fail(ErrorCode::kUsage, std::to_string(locked.size()) + " words of locked vertices, not " +
                                          std::to_string(neighbours.boundary_bits.size()));
     // One more, so that the last is read as a vector register is.
-    std::vector<Vec3> source(positions.size() + 1);
+    std::vector<Vec3> source = detail::large_vector<Vec3>(positions.size() + 1);
     VKMESH_CHECK(prepare_positions(positions, std::span(source).first(positions.size())));
-    std::vector<Vec3> target = source;
+    std::vector<Vec3> target = detail::large_vector<Vec3>(source.size());
+    std::copy(source.begin(), source.end(), target.begin());
     std::vector<std::uint32_t> stay(neighbours.boundary_bits.size());
     for (std::size_t w = 0; w < stay.size(); ++w)
       stay[w] = (options.fix_boundary ? neighbours.boundary_bits[w] : 0u) | (locked.empty() ? 0u : locked[w]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "large_pages.h"
+
 namespace vkmesh::detail {
 namespace {
 
@@ -14,7 +16,8 @@ constexpr std::uint32_t kMany = 16;
 }  // namespace
 
 RingGroups::RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out)
-    : order_(neighbours.vertex_count()), chunks_((order_.size() + kChunk - 1) / kChunk) {
+    : order_(large_vector<std::uint32_t>(neighbours.vertex_count())),
+      chunks_((order_.size() + kChunk - 1) / kChunk) {
   const auto valence = [&](std::uint32_t v) { return neighbours.offsets[v + 1] - neighbours.offsets[v]; };
   const auto bit = [](std::span<const std::uint32_t> bits, std::uint32_t v) {
     return bits.empty() ? 0u : (bits[v / 32] >> (v % 32)) & 1u;
