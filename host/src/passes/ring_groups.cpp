@@ -34,8 +34,10 @@ RingGroups::RingGroups(const NodeNeighbours& neighbours, std::span<const std::ui
       };
       std::array<std::uint8_t, kChunk> kinds;
       std::array<std::uint32_t, kLeftOut + 2> at{};
-      for (std::uint32_t v = first; v < last; ++v)
-        ++at[(kinds[v - first] = static_cast<std::uint8_t>(kind(v))) + 1];
+      for (std::uint32_t v = first; v < last; ++v) {
+        kinds[v - first] = static_cast<std::uint8_t>(kind(v));
+        ++at[kinds[v - first] + 1u];
+      }
       at[0] = first;
       for (std::uint32_t k = 0; k <= kLeftOut; ++k) at[k + 1] += at[k];
       for (std::uint32_t v = first; v < last; ++v) order_[at[kinds[v - first]]++] = v;

@@ -20,7 +20,7 @@ struct RingGroup {
   std::uint32_t valence = 0;
   bool boundary = false;
 
-  static constexpr std::size_t kMost = 64;  ///< As many vertices as fit into the first cache with their sums.
+  static constexpr std::size_t kMost = 64;  ///< So that what is summed up for them stays in the first cache.
 };
 
 /// A point for each vertex of a group, coordinate by coordinate as vector registers take them.
@@ -48,6 +48,8 @@ struct RingPoints {
 class RingGroups {
  public:
   explicit RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out = {});
+  RingGroups(const RingGroups&) = delete;
+  RingGroups& operator=(const RingGroups&) = delete;
 
   /// Calls body(group) for groups of at most RingGroup::kMost vertices that cover all, on any threads.
   template <class Body>
