@@ -8,9 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "large_pages.h"
 
 namespace vkmesh::detail {
 
@@ -26,21 +24,12 @@ class LargeArray {
     const std::size_t bytes = size * sizeof(T);
     const std::size_t alignment = bytes < kLargePage ? kCacheLine : kLargePage;
     data_ = Data(static_cast<T*>(::operator new(bytes, std::align_val_t(alignment))), Deleter{alignment});
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-    // The whole pages only, so that no memory beyond the array is made resident.
-    if (bytes >= kLargePage) madvise(data_.get(), bytes / kLargePage * kLargePage, MADV_HUGEPAGE);
-#endif
+    prefer_large_pages(data_.get(), bytes);
   }
 
-  [[nodiscard]] T& operator[](std::size_t i) {
-    return data_.get()[i];
-  }
-  [[nodiscard]] const T& operator[](std::size_t i) const {
-    return data_.get()[i];
-  }
-  [[nodiscard]] std::size_t size() const {
-    return size_;
-  }
+  [[nodiscard]] T& operator[](std::size_t i) { return data_.get()[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return data_.get()[i]; }
+  [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Keeps the first `kept` elements.
   void grow(std::size_t size, std::size_t kept) {
@@ -50,7 +39,7 @@ class LargeArray {
   }
 
  private:
-  static constexpr std::size_t kCacheLine = 64, kLargePage = std::size_t{1} << 21;
+  static constexpr std::size_t kCacheLine = 64;
   struct Deleter {
     std::size_t alignment = kCacheLine;
     void operator()(T* data) const { ::operator delete(data, std::align_val_t(alignment)); }

@@ -1,13 +1,33 @@
+#include <algorithm>
 #include <string>
 
 #include <vkmesh/passes/arithmetic.h>
 
+#include "parallel.h"
 #include "passes/blocks.h"
 
 namespace vkmesh {
+namespace {
+
+constexpr std::size_t kGrain = 1 << 14;
+
+struct Largest {
+  std::uint32_t magnitude = 0;
+
+  Largest& operator+=(const Largest& other) {
+    magnitude = std::max(magnitude, other.magnitude);
+    return *this;
+  }
+};
+
+}  // namespace
 
 Result<void> check_positions(std::span<const Vec3> positions) {
-  if (detail::largest_magnitude(positions) < detail::bits(kMaxCoordinate)) return {};
+  const auto largest =
+      detail::parallel_sum<Largest>(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        return Largest{detail::largest_magnitude(positions.subspan(begin, end - begin))};
+      });
+  if (largest.magnitude < detail::bits(kMaxCoordinate)) return {};
   for (std::size_t i = 0; i < positions.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (!(std::fabs(positions[i][k]) < kMaxCoordinate))
@@ -21,8 +41,9 @@ Result<void> prepare_positions(std::span<const Vec3> positions, std::span<Vec3> 
   if (positions.size() != prepared.size())
     return fail(ErrorCode::kUsage, "as many prepared positions as positions are needed");
   VKMESH_CHECK(check_positions(positions));
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    prepared[i] = zero_below(positions[i], VKMESH_TINY_COORDINATE);
+  detail::parallel_ranges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) prepared[i] = zero_below(positions[i], VKMESH_TINY_COORDINATE);
+  });
   return {};
 }
 

@@ -36,16 +36,6 @@ VKMESH_CLONES void corner_angles(const Points& p0, const Points& p1, const Point
         corner_angle(corner_product(p0[f], p1[f], p2[f]), vector_length(area_vector(p0[f], p1[f], p2[f])));
 }
 
-// The cotangents at the second and at the third corner of each triangle.
-VKMESH_CLONES void cotangents(const Vec3* here, const Vec3* around, std::size_t count, float* __restrict at_q,
-                              float* __restrict at_r) {
-  for (std::size_t t = 0; t < count; ++t) {
-    const float twice_area = vector_length(area_vector(here[t], around[t], around[t + 1]));
-    at_q[t] = cotangent(corner_product(around[t], around[t + 1], here[t]), twice_area);
-    at_r[t] = cotangent(corner_product(around[t + 1], here[t], around[t]), twice_area);
-  }
-}
-
 }  // namespace
 
 void area_vectors(std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
@@ -96,22 +86,6 @@ VKMESH_CLONES std::uint32_t largest_magnitude(std::span<const Vec3> vectors) {
   for (const Vec3& v : vectors)
     for (int k = 0; k < 3; ++k) largest = std::max(largest, bits(v[k]) & 0x7fffffffu);
   return largest;
-}
-
-void Fans::gather(const NodeNeighbours& neighbours, std::span<const Vec3> positions, std::uint32_t begin,
-                  std::uint32_t end) {
-  const std::size_t corners = neighbours.offsets[end] - neighbours.offsets[begin] + (end - begin);
-  here.resize(corners), around.resize(corners);
-  std::size_t t = 0;
-  for (std::uint32_t v = begin; v < end; ++v) {
-    const auto ring = neighbours.of(VertexId(v));
-    for (std::size_t k = 0; k <= ring.size(); ++k) here[t + k] = positions[v];
-    for (std::size_t k = 0; k < ring.size(); ++k) around[t + k] = positions[ring[k]];
-    around[t + ring.size()] = ring.empty() ? positions[v] : around[t];
-    t += ring.size() + 1;
-  }
-  at_q.resize(size()), at_r.resize(size());
-  cotangents(here.data(), around.data(), size(), at_q.data(), at_r.data());
 }
 
 }  // namespace vkmesh::detail

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include <vkmesh/node_neighbours.h>
 #include <vkmesh/vec.h>
 
 namespace vkmesh::detail {
@@ -29,19 +28,5 @@ void dihedral_angles(std::span<const Vec3> left, std::span<const Vec3> right, st
 /// The largest magnitude among the coordinates, as its bits: those of a NaN or an infinity exceed every
 /// other.
 [[nodiscard]] std::uint32_t largest_magnitude(std::span<const Vec3> vectors);
-
-/// The triangles around some vertices, one after another, and the cotangents at their second and third
-/// corners: triangle t is here[t], around[t], around[t + 1].
-struct Fans {
-  std::vector<Vec3> here, around;
-  std::vector<float> at_q, at_r;  ///< The cotangents at around[t] and at around[t + 1].
-
-  /// The fans of vertices [begin, end), each with one triangle more than there are neighbours: its ring ends
-  /// with its first neighbour again, and what stands after that is no triangle.
-  void gather(const NodeNeighbours& neighbours, std::span<const Vec3> positions, std::uint32_t begin,
-              std::uint32_t end);
-  /// Triangles, and those that are none, but for the last.
-  [[nodiscard]] std::size_t size() const { return here.empty() ? 0 : here.size() - 1; }
-};
 
 }  // namespace vkmesh::detail

@@ -1,100 +1,134 @@
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <vkmesh/passes/curvatures.h>
 
 #include "catching.h"
-#include "parallel.h"
-#include "passes/blocks.h"
+#include "large_pages.h"
 #include "passes/clones.h"
 #include "passes/pass_input.h"
+#include "passes/ring_groups.h"
 
 namespace vkmesh {
 namespace {
 
-// Vertices taken together: few enough to stay in the cache, many enough to fill vector registers.
-constexpr std::uint32_t kBlock = 128;
+using detail::RingGroup, detail::RingPoints;
+constexpr std::size_t kMost = RingGroup::kMost;
 
 float squared_distance(Vec3 a, Vec3 b) {
   return squared_length(zero_below(b - a, VKMESH_TINY_LENGTH));
 }
 
-// What the triangles around some vertices give to these.
+// What triangles give to their corners `here`; the other corners are q and r.
 struct Shares {
-  std::vector<Vec3> area_vectors;
-  std::vector<float> angles;
-  std::vector<float> areas;  // Eight times.
+  RingPoints area_vector = {};
+  float at_q[kMost] = {}, at_r[kMost] = {};  // Cotangents.
+  float angle[kMost] = {};
+  float area[kMost] = {};  // Eight times.
 };
-
-VKMESH_CLONES void measure(const detail::Fans& fans, Vec3* __restrict area_vectors, float* __restrict angles,
-                           float* __restrict areas) {
-  const Vec3 *here = fans.here.data(), *around = fans.around.data();
-  const float *at_q = fans.at_q.data(), *at_r = fans.at_r.data();
-  for (std::size_t t = 0, size = fans.size(); t < size; ++t) {
-    const Vec3 normal = area_vector(here[t], around[t], around[t + 1]);
-    const float twice_area = vector_length(normal);
-    const float product = corner_product(here[t], around[t], around[t + 1]);
-    const float voronoi = zero_below(squared_distance(here[t], around[t]) * at_r[t], VKMESH_TINY_AREA) +
-                          zero_below(squared_distance(here[t], around[t + 1]) * at_q[t], VKMESH_TINY_AREA);
-    const bool obtuse_elsewhere = std::min(at_q[t], at_r[t]) < 0.0f;
-    area_vectors[t] = {normal.x, normal.y, normal.z};  // As a whole it would not fill vector registers.
-    angles[t] = corner_angle(product, twice_area);
-    areas[t] = product < 0.0f ? 2.0f * twice_area : (obtuse_elsewhere ? twice_area : voronoi);
+VKMESH_CLONES void compute(Shares& out, const RingPoints& here, const RingPoints& q, const RingPoints& r,
+                           std::size_t count) {
+  Shares s;
+  float twice_areas[kMost], products[kMost];
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 area = area_vector(here[i], q[i], r[i]);
+    s.area_vector.set(i, area);
+    twice_areas[i] = vector_length(area);
+    products[i] = corner_product(here[i], q[i], r[i]);
   }
+  for (std::size_t i = 0; i < count; ++i) s.angle[i] = corner_angle(products[i], twice_areas[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    s.at_q[i] = cotangent(corner_product(q[i], r[i], here[i]), twice_areas[i]);
+    s.at_r[i] = cotangent(corner_product(r[i], here[i], q[i]), twice_areas[i]);
+  }
+  float voronoi[kMost];
+  for (std::size_t i = 0; i < count; ++i)
+    voronoi[i] = zero_below(squared_distance(here[i], q[i]) * s.at_r[i], VKMESH_TINY_AREA) +
+                 zero_below(squared_distance(here[i], r[i]) * s.at_q[i], VKMESH_TINY_AREA);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float not_here = std::min(s.at_q[i], s.at_r[i]) < 0.0f ? twice_areas[i] : voronoi[i];
+    s.area[i] = products[i] < 0.0f ? 2.0f * twice_areas[i] : not_here;
+  }
+  out = s;
 }
 
-// What the triangles around each vertex of a block add up to.
+// Sums around the vertices `here`.
 struct Sums {
-  std::array<Vec3, kBlock> laplacian, normal;
-  std::array<float, kBlock> angles, area;
-  std::array<std::uint32_t, kBlock> open;
-
-  void set(std::size_t i, bool is_open) {
-    laplacian[i] = normal[i] = Vec3(0.0f);
-    angles[i] = area[i] = 0.0f;
-    open[i] = is_open ? 1 : 0;
-  }
-
-  // Of one vertex; its triangles are [first, end), the last of which is none where it is open.
-  void add_up(std::size_t i, const detail::Fans& fans, const Shares& shares, std::size_t first,
-              std::size_t end) {
-    const Vec3 here = fans.here[first];
-    const std::size_t triangles_end = open[i] != 0 ? end - 1 : end;
-    Vec3 to_neighbours(0.0f), area_vectors(0.0f);
-    float before = open[i] != 0 ? 0.0f : fans.at_q[end - 1];
-    for (std::size_t t = first; t < end; ++t) {
-      const float after = t < triangles_end ? fans.at_r[t] : 0.0f;
-      const float weight = zero_below(before + after, VKMESH_TINY_DIRECTION);
-      to_neighbours += weight * zero_below(here - fans.around[t], VKMESH_TINY_LENGTH);
-      before = fans.at_q[t];
-    }
-    for (std::size_t t = first; t < triangles_end; ++t) {
-      area_vectors += shares.area_vectors[t];
-      angles[i] += shares.angles[t];
-      area[i] += shares.areas[t];
-    }
-    laplacian[i] = to_neighbours, normal[i] = area_vectors;
-  }
+  RingPoints laplacian = {}, normal = {};
+  float angles[kMost] = {}, area[kMost] = {};
 };
-
-VKMESH_CLONES void conclude(const Sums& sums, std::size_t count, VertexCurvature* __restrict out) {
+// The edge to q, between a triangle and the one after it.
+VKMESH_CLONES void add(Sums& out, const RingPoints& here, const RingPoints& q, const Shares& before,
+                       const Shares& after, std::size_t count) {
+  Sums sums = out;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool open = sums.open[i] != 0;
-    const float whole = open ? 1.0f : 2.0f;
-    const float defect =
-        (whole * (2.0f * VKMESH_HALF_PI_HIGH) - sums.angles[i]) + whole * (2.0f * VKMESH_HALF_PI_LOW);
-    const float area = 0.125f * sums.area[i];
-    const Vec3 a = unit_vector(sums.laplacian[i]), b = unit_vector(sums.normal[i]);
-    const float along = (a.x * b.x + a.y * b.y) + a.z * b.z;
-    const float size = bounded_quotient(vector_length(sums.laplacian[i]), 0.5f * sums.area[i],
-                                        VKMESH_CURVATURE_BOUND, VKMESH_CURVATURE_BOUND_INVERSE);
-    const float gaussian =
-        bounded_quotient(defect, area, VKMESH_CURVATURE_BOUND, VKMESH_CURVATURE_BOUND_INVERSE);
-    out[i].mean = open ? 0.0f : (along < 0.0f ? -size : size);
-    out[i].gaussian = open ? 0.0f : gaussian;
-    out[i].angle_defect = defect;
-    out[i].area = area;
+    const float weight = zero_below(before.at_q[i] + after.at_r[i], VKMESH_TINY_DIRECTION);
+    sums.laplacian.set(i, sums.laplacian[i] + weight * zero_below(here[i] - q[i], VKMESH_TINY_LENGTH));
+    sums.normal.set(i, sums.normal[i] + after.area_vector[i]);
+    sums.angles[i] += after.angle[i];
+    sums.area[i] += after.area[i];
   }
+  out = sums;
+}
+
+struct Curvatures {
+  std::array<float, kMost> mean, gaussian, angle_defect, area;
+};
+// `whole`: how many half turns there are around each.
+VKMESH_CLONES void compute(Curvatures& out, const Sums& sums, float whole, std::size_t count) {
+  Curvatures c;
+  for (std::size_t i = 0; i < count; ++i) {
+    c.angle_defect[i] =
+        (whole * (2.0f * VKMESH_HALF_PI_HIGH) - sums.angles[i]) + whole * (2.0f * VKMESH_HALF_PI_LOW);
+    c.area[i] = 0.125f * sums.area[i];
+  }
+  float along[kMost], size[kMost];
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 a = unit_vector(sums.laplacian[i]), b = unit_vector(sums.normal[i]);
+    along[i] = (a.x * b.x + a.y * b.y) + a.z * b.z;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    size[i] = bounded_quotient(vector_length(sums.laplacian[i]), 0.5f * sums.area[i], VKMESH_CURVATURE_BOUND,
+                               VKMESH_CURVATURE_BOUND_INVERSE);
+    c.gaussian[i] = bounded_quotient(c.angle_defect[i], c.area[i], VKMESH_CURVATURE_BOUND,
+                                     VKMESH_CURVATURE_BOUND_INVERSE);
+  }
+  for (std::size_t i = 0; i < count; ++i) c.mean[i] = along[i] < 0.0f ? -size[i] : size[i];
+  out = c;
+}
+
+void curvatures_of(const NodeNeighbours& neighbours, const RingGroup& group, const Vec3* positions,
+                   VertexCurvature* out) {
+  const std::size_t count = group.vertices.size();
+  RingPoints here, q, r;
+  here.take(group, positions);
+  q.take(group, positions, neighbours, 0);
+  // The triangle between the last neighbour and the first, which is none on the boundary.
+  Shares last;
+  if (!group.boundary) {
+    r.take(group, positions, neighbours, group.valence - 1);
+    compute(last, here, r, q, count);
+  }
+  // Those before and after each edge.
+  Shares before = last, after;
+  Sums sums;
+  for (std::uint32_t k = 0; k < group.valence; ++k) {
+    if (k + 1 < group.valence) {
+      r.take(group, positions, neighbours, k + 1);
+      compute(after, here, q, r, count);
+    } else {
+      after = last;
+    }
+    add(sums, here, q, before, after, count);
+    std::swap(before, after);
+    q = r;
+  }
+  Curvatures c;
+  compute(c, sums, group.boundary ? 1.0f : 2.0f, count);
+  if (group.boundary) c.mean = c.gaussian = {};
+  for (std::size_t i = 0; i < count; ++i)
+    out[group.vertices[i]] = {c.mean[i], c.gaussian[i], c.angle_defect[i], c.area[i]};
 }
 
 }  // namespace
@@ -103,30 +137,10 @@ Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours
                                                 std::span<const Vec3> positions) {
   return detail::catching([&]() -> Result<std::vector<VertexCurvature>> {
     VKMESH_CHECK(detail::require_positions(positions, neighbours.vertex_count()));
-    std::vector<VertexCurvature> result(positions.size());
-    detail::parallel_ranges(result.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
-      detail::Fans fans;
-      Shares shares;
-      Sums sums;
-      for (std::size_t first = begin; first < end; first += kBlock) {
-        const auto v = static_cast<std::uint32_t>(first);
-        const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(kBlock, end - first));
-        fans.gather(neighbours, positions, v, v + count);
-        shares.area_vectors.resize(fans.size());
-        shares.angles.resize(fans.size()), shares.areas.resize(fans.size());
-        measure(fans, shares.area_vectors.data(), shares.angles.data(), shares.areas.data());
-        std::size_t fan = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-          const std::size_t neighbour_count = neighbours.of(VertexId(v + i)).size();
-          sums.set(i, neighbours.is_boundary(VertexId(v + i)));
-          if (neighbour_count > 0) sums.add_up(i, fans, shares, fan, fan + neighbour_count);
-          fan += neighbour_count + 1;
-        }
-        conclude(sums, count, result.data() + first);
-        for (std::uint32_t i = 0; i < count; ++i)
-          if (neighbours.of(VertexId(v + i)).empty()) result[v + i] = {};
-      }
-    });
+    std::vector<VertexCurvature> result = detail::large_vector<VertexCurvature>(positions.size());
+    const detail::RingGroups groups(neighbours);
+    groups.for_each(
+        [&](const RingGroup& group) { curvatures_of(neighbours, group, positions.data(), result.data()); });
     return result;
   });
 }

@@ -1,106 +1,147 @@
 #include <algorithm>
-#include <array>
+#include <cstring>
 #include <utility>
 
 #include <vkmesh/passes/laplacian_smoothing.h>
 
 #include "catching.h"
-#include "parallel.h"
-#include "passes/blocks.h"
+#include "large_pages.h"
 #include "passes/clones.h"
 #include "passes/pass_input.h"
+#include "passes/ring_groups.h"
 #include "passes/smoothing_input.h"
 
 namespace vkmesh {
 namespace {
 
-// Vertices moved together: few enough to stay in the cache, many enough to fill vector registers.
-constexpr std::uint32_t kBlock = 128;
-
-// What the neighbours of each vertex of a block add up to, and their weights; a vertex of no weight stays.
-struct Sums {
-  std::array<Vec3, kBlock> sum;
-  std::array<float, kBlock> total;
-};
-
-VKMESH_CLONES void step_towards(const Sums& sums, float factor, std::span<const Vec3> here,
-                                Vec3* __restrict there) {
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    const Vec3 mean = zero_below(sums.sum[i] * reciprocal(sums.total[i]), VKMESH_TINY_COORDINATE);
-    const Vec3 move = zero_below(factor * (mean - here[i]), VKMESH_TINY_COORDINATE);
-    const Vec3 moved = zero_below(here[i] + move, VKMESH_TINY_COORDINATE);
-    const bool stays = sums.total[i] == 0.0f;
-    there[i] = {stays ? here[i].x : moved.x, stays ? here[i].y : moved.y, stays ? here[i].z : moved.z};
-  }
+float step_towards(float here, float sum, float reciprocal_weight, float factor) {
+  const float mean = zero_below(sum * reciprocal_weight, VKMESH_TINY_COORDINATE);
+  const float move = zero_below(factor * (mean - here), VKMESH_TINY_COORDINATE);
+  return zero_below(here + move, VKMESH_TINY_COORDINATE);
 }
 
-class Step {
- public:
-  Step(const NodeNeighbours& neighbours, const LaplacianSmoothingOptions& options)
-      : neighbours_(neighbours), options_(options), stays_(options.locked.begin(), options.locked.end()) {
-    stays_.resize(neighbours.boundary_bits.size(), 0);
-    if (options.boundary == SmoothingBoundary::kFixed)
-      for (std::size_t i = 0; i < stays_.size(); ++i) stays_[i] |= neighbours.boundary_bits[i];
-  }
+// Of all coordinates of some vertices.
+VKMESH_CLONES void steps_towards(const float* here, const float* sums, float reciprocal_weight, float factor,
+                                 std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = step_towards(here[i], sums[i], reciprocal_weight, factor);
+}
 
-  void operator()(std::span<const Vec3> source, float factor, std::span<Vec3> target) const {
-    detail::parallel_ranges(source.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-      Sums sums;
-      detail::Fans fans;
-      for (std::size_t first = begin; first < end; first += kBlock) {
-        const std::size_t count = std::min<std::size_t>(kBlock, end - first);
-        add_up(source, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first + count), fans,
-               sums);
-        step_towards(sums, factor, source.subspan(first, count), target.data() + first);
-      }
-    });
-  }
+using detail::RingGroup, detail::RingPoints;
+constexpr std::size_t kMost = RingGroup::kMost;
 
- private:
-  void add_up(std::span<const Vec3> p, std::uint32_t begin, std::uint32_t end, detail::Fans& fans,
-              Sums& sums) const {
-    const bool uniform = options_.weights == SmoothingWeights::kUniform;
-    if (!uniform) fans.gather(neighbours_, p, begin, end);
-    std::size_t fan = 0;
-    for (std::uint32_t v = begin; v < end; ++v) {
-      const auto ring = neighbours_.of(VertexId(v));
-      const bool boundary = neighbours_.is_boundary(VertexId(v));
-      Vec3 sum(0.0f);
-      float total = 0.0f;
-      if (ring.empty() || ((stays_[v / 32] >> (v % 32)) & 1u) != 0) {
-        // No weight.
-      } else if (boundary && options_.boundary == SmoothingBoundary::kAlongItself) {
-        sum = (sum + p[ring.front()]) + p[ring.back()];
-        total = 2.0f;
-      } else if (uniform) {
-        for (const std::uint32_t n : ring) sum += p[n];
-        total = static_cast<float>(ring.size());
-      } else {
-        add_up_fan(fans, fan, fan + ring.size(), boundary, sum, total);
-      }
-      sums.sum[v - begin] = sum, sums.total[v - begin] = total;
-      fan += ring.size() + 1;
-    }
-  }
+// A vertex and what follows it in memory, as one vector register holds them.
+struct Four {
+  float at[4];
 
-  // One vertex by cotangent weights; `open`: there is no triangle between the last neighbour and the first.
-  static void add_up_fan(const detail::Fans& fans, std::size_t first, std::size_t end, bool open, Vec3& sum,
-                         float& total) {
-    // The angle opposite each edge in the triangle before it, and in the one after it.
-    float before = open ? 0.0f : fans.at_q[end - 1];
-    for (std::size_t t = first; t < end; ++t) {
-      const float both = before + (open && t + 1 == end ? 0.0f : fans.at_r[t]);
-      const float weight = both > VKMESH_TINY_WEIGHT ? both : 0.0f;
-      sum += zero_below(weight * fans.around[t], VKMESH_TINY_COORDINATE);
-      total += weight;
-      before = fans.at_q[t];
-    }
+  static Four of(const Vec3* position) {
+    Four result;
+    std::memcpy(result.at, static_cast<const void*>(position), sizeof(result.at));
+    return result;
   }
-
-  const NodeNeighbours& neighbours_;
-  const LaplacianSmoothingOptions& options_;
-  std::vector<std::uint32_t> stays_;  // Bit by bit, as in options.locked.
+  void operator+=(const Four& other) {
+    for (std::size_t k = 0; k < 4; ++k) at[k] += other.at[k];
+  }
 };
+
+// By uniform weights; from and to arrays with one element more than there are vertices. `ends_only`: only the
+// first neighbour and the last count.
+void uniform_steps(const NodeNeighbours& neighbours, const RingGroup& group, bool ends_only, float factor,
+                   const Vec3* source, Vec3* target) {
+  Four here[kMost], sums[kMost], there[kMost];
+  const std::uint32_t* const ids = neighbours.ids.data();
+  const std::uint32_t stride = ends_only ? std::max(group.valence - 1, 1u) : 1;
+  const std::uint32_t end = ends_only ? stride + 1 : group.valence;
+  const std::size_t count = group.vertices.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t v = group.vertices[i];
+    const std::uint32_t* const ring = ids + neighbours.offsets[v];
+    Four sum = Four::of(source + ring[0]);
+    for (std::uint32_t k = stride; k < end; k += stride) sum += Four::of(source + ring[k]);
+    sums[i] = sum;
+    here[i] = Four::of(source + v);
+  }
+  steps_towards(here[0].at, sums[0].at, reciprocal(ends_only ? 2.0f : static_cast<float>(group.valence)),
+                factor, 4 * count, there[0].at);
+  for (std::size_t i = 0; i < count; ++i)
+    target[group.vertices[i]] = {there[i].at[0], there[i].at[1], there[i].at[2]};
+}
+
+// The cotangents at q and r of the triangles here, q, r.
+struct Cotangents {
+  float at_q[kMost] = {}, at_r[kMost] = {};
+};
+VKMESH_CLONES void compute(Cotangents& out, const RingPoints& here, const RingPoints& q, const RingPoints& r,
+                           std::size_t count) {
+  Cotangents result;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float twice_area = vector_length(area_vector(here[i], q[i], r[i]));
+    result.at_q[i] = cotangent(corner_product(q[i], r[i], here[i]), twice_area);
+    result.at_r[i] = cotangent(corner_product(r[i], here[i], q[i]), twice_area);
+  }
+  out = result;
+}
+
+// Sums of weighted neighbours, and of the weights.
+struct Weighted {
+  RingPoints sum = {};
+  float total[kMost] = {};
+};
+VKMESH_CLONES void add(Weighted& out, const RingPoints& q, const Cotangents& before, const Cotangents& after,
+                       std::size_t count) {
+  Weighted result = out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float both = before.at_q[i] + after.at_r[i];
+    const float weight = both > VKMESH_TINY_WEIGHT ? both : 0.0f;
+    result.sum.set(i, result.sum[i] + zero_below(weight * q[i], VKMESH_TINY_COORDINATE));
+    result.total[i] += weight;
+  }
+  out = result;
+}
+VKMESH_CLONES void steps_towards(RingPoints& here, const Weighted& mean, float factor, std::size_t count) {
+  RingPoints result;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float each = reciprocal(mean.total[i]);
+    const bool stays = mean.total[i] == 0.0f;
+    const auto step = [&](float from, float sum) {
+      const float there = step_towards(from, sum, each, factor);
+      return stays ? from : there;
+    };
+    const Vec3 from = here[i], sum = mean.sum[i];
+    result.set(i, {step(from.x, sum.x), step(from.y, sum.y), step(from.z, sum.z)});
+  }
+  here = result;
+}
+
+// By cotangent weights.
+void cotangent_steps(const NodeNeighbours& neighbours, const RingGroup& group, float factor,
+                     const Vec3* source, Vec3* target) {
+  const std::size_t count = group.vertices.size();
+  RingPoints here, q, r;
+  here.take(group, source);
+  q.take(group, source, neighbours, 0);
+  // The triangle between the last neighbour and the first, which is none on the boundary.
+  Cotangents last;
+  if (!group.boundary) {
+    r.take(group, source, neighbours, group.valence - 1);
+    compute(last, here, r, q, count);
+  }
+  // Those before and after each edge.
+  Cotangents before = last, after;
+  Weighted mean;
+  for (std::uint32_t k = 0; k < group.valence; ++k) {
+    if (k + 1 < group.valence) {
+      r.take(group, source, neighbours, k + 1);
+      compute(after, here, q, r, count);
+    } else {
+      after = last;
+    }
+    add(mean, q, before, after, count);
+    before = after;
+    q = r;
+  }
+  steps_towards(here, mean, factor, count);
+  for (std::size_t i = 0; i < count; ++i) target[group.vertices[i]] = here[i];
+}
 
 }  // namespace
 
@@ -115,18 +156,31 @@ Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
     if (!locked.empty() && locked.size() != neighbours.boundary_bits.size())
       return fail(ErrorCode::kUsage, std::to_string(locked.size()) + " words of locked vertices, not " +
                                          std::to_string(neighbours.boundary_bits.size()));
-    std::vector<Vec3> source(positions.size());
-    VKMESH_CHECK(prepare_positions(positions, source));
-    std::vector<Vec3> target(source.size());
-    const Step move_all(neighbours, options);
+    // One more, so that the last is read as a vector register is.
+    std::vector<Vec3> source = detail::large_vector<Vec3>(positions.size() + 1);
+    VKMESH_CHECK(prepare_positions(positions, std::span(source).first(positions.size())));
+    std::vector<Vec3> target = detail::large_vector<Vec3>(source.size());
+    std::copy(source.begin(), source.end(), target.begin());
+    std::vector<std::uint32_t> stay(neighbours.boundary_bits.size());
+    for (std::size_t w = 0; w < stay.size(); ++w)
+      stay[w] = (options.boundary == SmoothingBoundary::kFixed ? neighbours.boundary_bits[w] : 0u) |
+                (locked.empty() ? 0u : locked[w]);
+    const detail::RingGroups groups(neighbours, stay);
     const auto step = [&](std::uint32_t i, float factor) -> Result<void> {
       if (progress && !progress(static_cast<double>(i) / options.iterations))
         return fail(ErrorCode::kInterrupted, "smoothing was interrupted");
-      move_all(source, factor, target);
+      groups.for_each([&](const RingGroup& group) {
+        const bool ends_only = group.boundary && options.boundary == SmoothingBoundary::kAlongItself;
+        if (ends_only || options.weights == SmoothingWeights::kUniform)
+          uniform_steps(neighbours, group, ends_only, factor, source.data(), target.data());
+        else
+          cotangent_steps(neighbours, group, factor, source.data(), target.data());
+      });
       std::swap(source, target);
       return {};
     };
     VKMESH_CHECK(detail::for_each_smoothing_step(options, step));
+    source.pop_back();
     return source;
   });
 }

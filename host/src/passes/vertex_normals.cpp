@@ -3,6 +3,7 @@
 #include <vkmesh/passes/vertex_normals.h>
 
 #include "catching.h"
+#include "large_pages.h"
 #include "parallel.h"
 #include "passes/blocks.h"
 #include "passes/pass_input.h"
@@ -24,7 +25,7 @@ Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<con
     VKMESH_CHECK(detail::require_triangles(mesh, "vertex_normals"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
     const bool by_angle = options.weights == NormalWeights::kAngle;
-    std::vector<Vec3> normals(positions.size(), Vec3(0.0f));
+    std::vector<Vec3> normals = detail::large_vector<Vec3>(positions.size());
     const auto corners_of = [&](std::size_t begin, std::size_t end) {
       return mesh.origins().subspan(3 * begin, 3 * (end - begin));
     };

@@ -1,0 +1,68 @@
+// The vertices of a mesh in groups that fill vector registers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <vkmesh/node_neighbours.h>
+#include <vkmesh/vec.h>
+
+#include "parallel.h"
+
+namespace vkmesh::detail {
+
+/// Vertices near each other that have equally many neighbours, and are all of the boundary or all not: a loop
+/// over neighbours runs as often for each of them.
+struct RingGroup {
+  std::span<const std::uint32_t> vertices;
+  std::uint32_t valence = 0;
+  bool boundary = false;
+
+  static constexpr std::size_t kMost = 64;  ///< So that what is summed up for them stays in the first cache.
+};
+
+/// A point for each vertex of a group, coordinate by coordinate as vector registers take them.
+struct RingPoints {
+  float x[RingGroup::kMost], y[RingGroup::kMost], z[RingGroup::kMost];
+
+  void set(std::size_t i, Vec3 v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+  [[nodiscard]] Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+
+  /// The positions of the group.
+  void take(const RingGroup& group, const Vec3* positions) {
+    for (std::size_t i = 0; i < group.vertices.size(); ++i) set(i, positions[group.vertices[i]]);
+  }
+  /// Those of its k-th neighbours.
+  void take(const RingGroup& group, const Vec3* positions, const NodeNeighbours& neighbours,
+            std::uint32_t k) {
+    const std::uint32_t* const ids = neighbours.ids.data();
+    for (std::size_t i = 0; i < group.vertices.size(); ++i)
+      set(i, positions[ids[neighbours.offsets[group.vertices[i]] + k]]);
+  }
+};
+
+/// All vertices that have neighbours, but those whose bit is set in `left_out` (as in
+/// NodeNeighbours::boundary_bits), in groups. O(vertices), in parallel. 4 bytes a vertex.
+class RingGroups {
+ public:
+  explicit RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out = {});
+  RingGroups(const RingGroups&) = delete;
+  RingGroups& operator=(const RingGroups&) = delete;
+
+  /// Calls body(group) for groups of at most RingGroup::kMost vertices that cover all, on any threads.
+  template <class Body>
+  void for_each(Body&& body) const {
+    parallel_ranges(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c)
+        for (const RingGroup& group : chunks_[c]) body(group);
+    });
+  }
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<std::vector<RingGroup>> chunks_;
+};
+
+}  // namespace vkmesh::detail
