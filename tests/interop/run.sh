@@ -202,4 +202,21 @@ if [ -x "$readers/cgal_judge" ] && [ -e data/cgal/meshes ]; then
 elif [ -x "$readers/cgal_judge" ]; then
   absent cgal "data/cgal is not there, see tools/fetch_data.sh"
 fi
+
+# ---- How far surfaces lie from each other
+if [ -x "$readers/cgal_distance" ] && [ -e data/cgal/meshes ]; then
+  arguments=()
+  for name in elephant fandisk knot1; do
+    "$vkmesh" convert "data/cgal/meshes/$name.off" "$work/$name-whole.off" --triangulate --quiet
+    "$vkmesh" simplify "$work/$name-whole.off" "$work/$name-tenth.off" --ratio 0.1 --quiet
+    "$vkmesh" compare "$work/$name-whole.off" "$work/$name-tenth.off" --json >"$work/$name-compared.json"
+    arguments+=("$work/$name-whole.off" "$work/$name-tenth.off" "$work/$name-compared.json")
+  done
+  if totals=$(timeout 120 "$readers/cgal_distance" "${arguments[@]}" 2>"$work/err"); then
+    echo "cgal: vkmesh compare agrees: $totals"
+  else
+    cat "$work/err" >&2
+    fails "CGAL and vkmesh compare disagree ($totals)"
+  fi
+fi
 exit $failed
