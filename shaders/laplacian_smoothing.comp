@@ -12,8 +12,7 @@ void main() {
   // Along the boundary only the first neighbour and the last count.
   const bool ends_only = boundary && p.boundary_rule == VKMESH_BOUNDARY_ALONG_ITSELF;
   precise vec3 sum = vec3(0.0);
-  uint neighbours[VKMESH_UNMASKED];
-  for (uint k = 0; k < VKMESH_UNMASKED; ++k) neighbours[k] = p.neighbour_ids.at[VKMESH_CLAMPED(begin + k, end)];
+  const uint neighbours[VKMESH_UNMASKED] = load_list(p.neighbour_ids, begin, end);
   for (uint k = 0; k < VKMESH_UNMASKED; ++k) {
     const uint n = begin + k;
     precise vec3 more = sum + load3(p.source, neighbours[k]);

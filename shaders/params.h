@@ -12,9 +12,7 @@
 namespace vkmesh::kernels {
 #else
 // clang-format off
-struct Packed3 { float x, y, z; };
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer Floats { float at[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) buffer Vectors { Packed3 at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Uints { uint at[]; };
 // clang-format on
 #define VKMESH_UINT uint

@@ -10,10 +10,9 @@ void main() {
   precise vec3 sum = vec3(0.0);
   const uint begin = p.corner_offsets.at[v];
   const uint end = p.corner_offsets.at[v + 1];
-  uint faces[VKMESH_UNMASKED];
-  for (uint k = 0; k < VKMESH_UNMASKED; ++k) faces[k] = p.corner_half_edges.at[VKMESH_CLAMPED(begin + k, end)] / 3;
+  const uint half_edges[VKMESH_UNMASKED] = load_list(p.corner_half_edges, begin, end);
   for (uint k = 0; k < VKMESH_UNMASKED; ++k) {
-    precise vec3 more = sum + load3(p.areas, faces[k]);
+    precise vec3 more = sum + load3(p.areas, half_edges[k] / 3);
     sum = begin + k < end ? more : sum;
   }
   for (uint c = begin + VKMESH_UNMASKED; c < end; ++c) sum = sum + load3(p.areas, p.corner_half_edges.at[c] / 3);

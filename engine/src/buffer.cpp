@@ -72,7 +72,7 @@ Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemor
     buffer.size_ = bytes;
     VkBufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = std::max<std::uint64_t>(bytes, 4);
+    info.size = std::max<std::uint64_t>((bytes + 7) / 8 * 8, 8);  // Kernels load eight bytes at once.
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;

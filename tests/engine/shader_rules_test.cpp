@@ -19,7 +19,7 @@ namespace vkmesh::test {
 namespace {
 
 // SPIR-V opcodes and decorations, by their numbers in the specification.
-constexpr std::uint16_t kOpExtInst = 12, kOpTypeFloat = 22, kOpDecorate = 71;
+constexpr std::uint16_t kOpExtInst = 12, kOpCapability = 17, kOpTypeFloat = 22, kOpDecorate = 71;
 constexpr std::uint32_t kNoContraction = 42;
 
 /// Roundings of one 32-bit operation each, the same on every device as long as they are not fused.
@@ -43,6 +43,10 @@ const std::set<std::uint32_t> kAllowedFunctions = {
     4 /* FAbs */,  5 /* SAbs */,  38 /* UMin */,   39 /* SMin */,
     41 /* UMax */, 42 /* SMax */, 44 /* UClamp */, 45 /* SClamp */};
 
+/// What Vulkan 1.2 with bufferDeviceAddress offers, and no other feature.
+const std::set<std::uint32_t> kAllowedCapabilities = {1 /* Shader */,
+                                                      5347 /* PhysicalStorageBufferAddresses */};
+
 /// Each breach of the rules, as a sentence.
 std::vector<std::string> breaches(std::span<const std::uint32_t> module) {
   const auto instructions = detail::spirv_instructions(module);
@@ -58,6 +62,8 @@ std::vector<std::string> breaches(std::span<const std::uint32_t> module) {
     if (is_forbidden(i.opcode)) found.push_back("operation " + std::to_string(i.opcode) + at);
     if (i.opcode == kOpExtInst && !kAllowedFunctions.contains(i.words[4]))
       found.push_back("function " + std::to_string(i.words[4]) + " of GLSL.std.450" + at);
+    if (i.opcode == kOpCapability && !kAllowedCapabilities.contains(i.words[1]))
+      found.push_back("capability " + std::to_string(i.words[1]) + at);
     if (i.opcode == kOpTypeFloat && i.words[2] != 32)
       found.push_back("a float of " + std::to_string(i.words[2]) + " bits" + at);
   }
@@ -96,13 +102,15 @@ TEST_CASE("a breach of the rules is seen", "[no-device]") {
       changed[i.offset + 4] = 31;  // Sqrt
     else if (i.opcode == kOpTypeFloat)
       changed[i.offset + 2] = 64;
+    else if (i.opcode == kOpCapability)
+      changed[i.offset + 1] = 11;  // Int64
     else
       continue;
     INFO("instruction " << i.opcode << " at word " << i.offset);
     CHECK(breaches(changed).size() == 1);
     kinds.insert(std::to_string(i.opcode));
   }
-  CHECK(kinds.size() == 4);
+  CHECK(kinds.size() == 5);
 }
 
 TEST_CASE("shaders are valid SPIR-V, as compiled and with float controls", "[no-device]") {
