@@ -10,3 +10,11 @@
 #else
 #define VKMESH_CLONES
 #endif
+
+// The same with all that it calls inlined, which is what a loop of large functions needs to fill vector
+// registers.
+#if defined(__GNUC__)
+#define VKMESH_FLAT_CLONES __attribute__((flatten)) VKMESH_CLONES
+#else
+#define VKMESH_FLAT_CLONES VKMESH_CLONES
+#endif

@@ -5,6 +5,8 @@
 
 #include "catching.h"
 #include "parallel.h"
+#include "passes/clones.h"
+#include "passes/edge_values.h"
 #include "passes/pass_input.h"
 #include "passes/raw_measures.h"
 
@@ -110,15 +112,59 @@ Vec3 least_place(const VertexQuadric& p, const VertexQuadric& q, Vec3 d) {
   return near ? m + s : m;
 }
 
-float cost_of(const VertexQuadric& p, const VertexQuadric& q, Vec3 d, CollapsePlacement placement) {
-  float cost = 0.0f;
-  if (placement == CollapsePlacement::kEndpoint) {
-    const float at_p = both(p, q, d, Vec3(0.0f)), at_q = both(p, q, d, d);
-    cost = at_q <= at_p ? at_q : at_p;
-  } else {
-    cost = both(p, q, d, placement == CollapsePlacement::kOptimal ? least_place(p, q, d) : 0.5f * d);
-  }
+float finite(float cost) {
   return (detail::bits(cost) & 0x7fffffffu) < 0x7f800000u ? cost : VKMESH_LARGEST;
+}
+
+// Quadrics word by word, as vector registers take them.
+struct Edges {
+  using Lanes = std::array<float, detail::kEdgeBlock>;
+  std::array<Lanes, 6> p, q;
+  std::array<Lanes, 3> d;
+
+  [[nodiscard]] VertexQuadric quadric_p(std::size_t i) const {
+    return {p[0][i], p[1][i], p[2][i], p[3][i], p[4][i], p[5][i]};
+  }
+  [[nodiscard]] VertexQuadric quadric_q(std::size_t i) const {
+    return {q[0][i], q[1][i], q[2][i], q[3][i], q[4][i], q[5][i]};
+  }
+  [[nodiscard]] Vec3 along(std::size_t i) const { return {d[0][i], d[1][i], d[2][i]}; }
+};
+
+VKMESH_FLAT_CLONES void costs_at_least(const Edges& edges, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const VertexQuadric p = edges.quadric_p(i), q = edges.quadric_q(i);
+    const Vec3 d = edges.along(i);
+    out[i] = finite(both(p, q, d, least_place(p, q, d)));
+  }
+}
+VKMESH_FLAT_CLONES void costs_in_middle(const Edges& edges, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 d = edges.along(i);
+    out[i] = finite(both(edges.quadric_p(i), edges.quadric_q(i), d, 0.5f * d));
+  }
+}
+VKMESH_FLAT_CLONES void costs_at_end(const Edges& edges, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const VertexQuadric p = edges.quadric_p(i), q = edges.quadric_q(i);
+    const Vec3 d = edges.along(i);
+    const float at_p = both(p, q, d, Vec3(0.0f)), at_q = both(p, q, d, d);
+    out[i] = finite(at_q <= at_p ? at_q : at_p);
+  }
+}
+
+// Triangles by their area vectors: unit normals, and what their planes add to a quadric.
+struct Planes {
+  std::vector<Vec3> normals;
+  std::vector<VertexQuadric> quadrics;
+};
+VKMESH_FLAT_CLONES void make_planes(std::size_t count, Vec3* __restrict normals,
+                                    VertexQuadric* __restrict out) {
+  for (std::size_t f = 0; f < count; ++f) {
+    const Vec3 area = normals[f], n = unit_vector(area);
+    out[f] = plane(n, 0.5f * vector_length(area));
+    normals[f] = n;
+  }
 }
 
 }  // namespace
@@ -159,20 +205,14 @@ Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh, std::span<
     };
     std::vector<VertexQuadric> result(positions.size(), VertexQuadric{});
     // The planes of a block of faces on any core, then their sums in the order in which the shader gathers.
-    struct Block {
-      std::vector<Vec3> normals;
-      std::vector<VertexQuadric> planes;
-    };
-    const auto make = [&](std::size_t begin, std::size_t end, Block& block) {
+    const auto make = [&](std::size_t begin, std::size_t end, Planes& block) {
       block.normals.resize(end - begin);
-      block.planes.resize(end - begin);
-      for (std::size_t f = begin; f < end; ++f) {
-        const Vec3 area = area_vector(scaled(3 * f), scaled(3 * f + 1), scaled(3 * f + 2));
-        block.normals[f - begin] = unit_vector(area);
-        block.planes[f - begin] = plane(block.normals[f - begin], 0.5f * vector_length(area));
-      }
+      block.quadrics.resize(end - begin);
+      for (std::size_t f = begin; f < end; ++f)
+        block.normals[f - begin] = area_vector(scaled(3 * f), scaled(3 * f + 1), scaled(3 * f + 2));
+      make_planes(end - begin, block.normals.data(), block.quadrics.data());
     };
-    const auto add_up = [&](std::size_t begin, std::size_t end, const Block& block) {
+    const auto add_up = [&](std::size_t begin, std::size_t end, const Planes& block) {
       for (std::size_t f = begin; f < end; ++f)
         for (std::size_t i = 0; i < 3; ++i) {
           const std::size_t h = 3 * f + i, next = 3 * f + (i + 1) % 3, previous = 3 * f + (i + 2) % 3;
@@ -181,12 +221,12 @@ Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh, std::span<
                                   options.boundary_weight);
           };
           VertexQuadric& sum = result[corners[h]];
-          add(sum, block.planes[f - begin]);
+          add(sum, block.quadrics[f - begin]);
           if (twins[h] == kInvalid) add(sum, boundary(h, next));
           if (twins[previous] == kInvalid) add(sum, boundary(previous, h));
         }
     };
-    detail::parallel_in_order<Block>(mesh.face_count(), 1 << 11, make, add_up);
+    detail::parallel_in_order<Planes>(mesh.face_count(), 1 << 11, make, add_up);
     return result;
   });
 }
@@ -198,22 +238,26 @@ Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh, std::span<co
     VKMESH_CHECK(check(mesh, positions, options));
     if (quadrics.size() != mesh.vertex_count())
       return fail(ErrorCode::kUsage, "collapse costs need one quadric for each vertex");
-    const auto corners = mesh.origins(), twins = mesh.twins();
+    const auto corners = mesh.origins();
     const auto scaled = [&](std::uint32_t v) {
       return zero_below((positions[v] - options.centre) * options.scale, VKMESH_TINY_DIRECTION);
     };
-    std::vector<float> costs(mesh.half_edge_count());
-    detail::parallel_ranges(costs.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t h = begin; h < end; ++h) {
-        const std::uint32_t t = twins[h];
-        if (t < h) continue;
-        const std::uint32_t p = corners[h], q = corners[h % 3 == 2 ? h - 2 : h + 1];
-        const Vec3 d = zero_below(scaled(q) - scaled(p), VKMESH_TINY_DIRECTION);
-        costs[h] = cost_of(quadrics[p], quadrics[q], d, options.placement);
-        if (t != kInvalid) costs[t] = costs[h];
+    const auto take = [&](Edges& block, std::size_t i, std::uint32_t h) {
+      const std::uint32_t p = corners[h], q = corners[h % 3 == 2 ? h - 2 : h + 1];
+      const Vec3 d = zero_below(scaled(q) - scaled(p), VKMESH_TINY_DIRECTION);
+      for (std::size_t k = 0; k < 6; ++k) {
+        block.p[k][i] = quadrics[p][k];
+        block.q[k][i] = quadrics[q][k];
       }
-    });
-    return costs;
+      block.d[0][i] = d.x, block.d[1][i] = d.y, block.d[2][i] = d.z;
+    };
+    const auto compute = [&](const Edges& block, std::size_t count, std::span<float> out) {
+      const auto costs = options.placement == CollapsePlacement::kOptimal    ? costs_at_least
+                         : options.placement == CollapsePlacement::kMidpoint ? costs_in_middle
+                                                                             : costs_at_end;
+      costs(block, count, out.data());
+    };
+    return detail::edge_values<Edges>(mesh, true, 0.0f, take, compute);
   });
 }
 

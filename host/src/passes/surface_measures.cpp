@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include <vkmesh/passes/surface_measures.h>
 
 #include "catching.h"
 #include "parallel.h"
+#include "passes/clones.h"
 #include "passes/pass_input.h"
 #include "passes/raw_measures.h"
 
@@ -62,6 +64,32 @@ Sums measures_of(Vec3 a, Vec3 b, Vec3 c) {
   return s;
 }
 
+// The scaled corners of a block of triangles, coordinate by coordinate, and what they measure.
+struct Triangles {
+  using Lanes = std::array<float, kBlock>;
+  std::array<Lanes, 9> corners;
+  std::array<Lanes, 5> measures;
+
+  void set(std::size_t i, std::size_t corner, Vec3 p) {
+    for (std::size_t k = 0; k < 3; ++k) corners[3 * corner + k][i] = p[static_cast<int>(k)];
+  }
+  [[nodiscard]] Sums sums(std::size_t i) const {
+    return {measures[0][i], Vec3(measures[1][i], measures[2][i], measures[3][i]), measures[4][i]};
+  }
+};
+VKMESH_FLAT_CLONES void measure(Triangles& of) {
+  const auto c = of.corners;
+  Triangles::Lanes area, x, y, z, volume;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const Sums s =
+        measures_of({c[0][i], c[1][i], c[2][i]}, {c[3][i], c[4][i], c[5][i]}, {c[6][i], c[7][i], c[8][i]});
+    area[i] = s.twice_area;
+    x[i] = s.moment.x, y[i] = s.moment.y, z[i] = s.moment.z;
+    volume[i] = s.six_volumes;
+  }
+  of.measures = {area, x, y, z, volume};
+}
+
 }  // namespace
 
 detail::MeasuresFrame detail::frame_of_bounds(Vec3 low, Vec3 high) {
@@ -103,9 +131,12 @@ RawMeasures detail::raw_measures(std::span<const std::uint32_t> corners, std::sp
     return sum;
   };
   std::vector<Sums> level = by_blocks<Sums>(corners.size() / 3, [&](std::size_t begin, std::size_t end) {
-    return sum_of(begin, end, [&](std::size_t f) {
-      return measures_of(scaled(3 * f), scaled(3 * f + 1), scaled(3 * f + 2));
-    });
+    Triangles triangles{};
+    for (std::size_t f = begin; f < end; ++f)
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        triangles.set(f - begin, corner, scaled(3 * f + corner));
+    measure(triangles);
+    return sum_of(0, end - begin, [&](std::size_t k) { return triangles.sums(k); });
   });
   while (level.size() > 1)
     level = by_blocks<Sums>(level.size(), [&](std::size_t begin, std::size_t end) {

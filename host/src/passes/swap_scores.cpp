@@ -3,7 +3,8 @@
 #include <vkmesh/passes/swap_scores.h>
 
 #include "catching.h"
-#include "parallel.h"
+#include "passes/clones.h"
+#include "passes/edge_values.h"
 #include "passes/pass_input.h"
 
 namespace vkmesh {
@@ -30,7 +31,8 @@ struct Triangle {
   float score = 0.0f;
 };
 
-Triangle triangle(Vec3 a, Vec3 b, Vec3 c, SwapCriterion criterion) {
+template <SwapCriterion criterion>
+Triangle triangle(Vec3 a, Vec3 b, Vec3 c) {
   Triangle result;
   result.area = area_vector(a, b, c);
   const float twice_area = vector_length(result.area);
@@ -45,12 +47,26 @@ bool faces_away(Vec3 unit, Vec3 from) {
 }
 
 // The edge runs from p to q; `left` and `right` are the corners opposite to it.
-float score_of(Vec3 p, Vec3 q, Vec3 left, Vec3 right, SwapCriterion criterion) {
-  const Triangle t0 = triangle(p, q, left, criterion), t1 = triangle(q, p, right, criterion);
-  const Triangle n0 = triangle(left, right, q, criterion), n1 = triangle(right, left, p, criterion);
+template <SwapCriterion criterion>
+float score_of(Vec3 p, Vec3 q, Vec3 left, Vec3 right) {
+  const Triangle t0 = triangle<criterion>(p, q, left), t1 = triangle<criterion>(q, p, right);
+  const Triangle n0 = triangle<criterion>(left, right, q), n1 = triangle<criterion>(right, left, p);
   const Vec3 before = unit_vector(t0.area + t1.area);
   const float gain = std::min(n0.score, n1.score) - std::min(t0.score, t1.score);
   return faces_away(before, n0.area) || faces_away(before, n1.area) ? kNoSwap : gain;
+}
+
+struct Quadrilaterals {
+  std::array<Vec3, detail::kEdgeBlock> p, q, left, right;
+};
+
+VKMESH_FLAT_CLONES void scores_by_angle(const Quadrilaterals& of, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i)
+    out[i] = score_of<SwapCriterion::kMinAngle>(of.p[i], of.q[i], of.left[i], of.right[i]);
+}
+VKMESH_FLAT_CLONES void scores_by_quality(const Quadrilaterals& of, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i)
+    out[i] = score_of<SwapCriterion::kAspectRatio>(of.p[i], of.q[i], of.left[i], of.right[i]);
 }
 
 }  // namespace
@@ -62,16 +78,18 @@ Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh, std::span<const
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
     const auto corners = mesh.origins(), twins = mesh.twins();
     const auto opposite = [&](std::size_t h) { return positions[corners[h % 3 == 0 ? h + 2 : h - 1]]; };
-    std::vector<float> scores(mesh.half_edge_count(), kNoSwap);
-    detail::parallel_ranges(scores.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t h = begin; h < end; ++h) {
-        const std::uint32_t t = twins[h];
-        if (t == kInvalid || t < h) continue;
-        scores[h] = scores[t] =
-            score_of(positions[corners[h]], positions[corners[t]], opposite(h), opposite(t), criterion);
-      }
-    });
-    return scores;
+    const auto take = [&](Quadrilaterals& block, std::size_t i, std::uint32_t h) {
+      const std::uint32_t t = twins[h];
+      block.p[i] = positions[corners[h]];
+      block.q[i] = positions[corners[t]];
+      block.left[i] = opposite(h);
+      block.right[i] = opposite(t);
+    };
+    const auto compute = [&](const Quadrilaterals& block, std::size_t count, std::span<float> out) {
+      const bool by_angle = criterion == SwapCriterion::kMinAngle;
+      (by_angle ? scores_by_angle : scores_by_quality)(block, count, out.data());
+    };
+    return detail::edge_values<Quadrilaterals>(mesh, false, kNoSwap, take, compute);
   });
 }
 
