@@ -494,16 +494,6 @@ TEST_CASE("Inventor nodes do not stand too deep", "[io][inventor][bad]") {
 }
 
 TEST_CASE("Inventor and VRML 1 round trips are lossless for what they hold", "[io][inventor]") {
-  IndexedFaceSet of_points = torus(8, 6);
-  const std::size_t n = of_points.points.size();
-  of_points.point_channels = {{"normal", 3, ramp<float>(3 * n, 0.1)},
-                              {"uv", 2, ramp<float>(2 * n, 0.3)},
-                              {"color", 3, ramp<float>(3 * n, 0.001)}};
-  IndexedFaceSet of_corners = quad_cube();
-  of_corners.corner_channels = {
-      {"normal", 3, ramp<float>(72, 0.1)}, {"uv", 2, Floats(48, 0.5f)}, {"color", 3, ramp<float>(72, 0.01)}};
-  IndexedFaceSet of_faces = mixed_polygons();
-  of_faces.face_channels = {{"normal", 3, ramp<float>(9, 0.1)}, {"color", 3, ramp<float>(9, 0.1)}};
   IndexedFaceSet cloud;
   cloud.points = icosphere(1).points;
   cloud.point_channels = {{"normal", 3, ramp<float>(126, 0.3)},
@@ -512,8 +502,8 @@ TEST_CASE("Inventor and VRML 1 round trips are lossless for what they hold", "[i
   IndexedFaceSet jittered = icosphere(3);
   jitter(jittered, 1e-3f, 7);
   for (const FileFormat format : {FileFormat::kInventor, FileFormat::kVrml1})
-    for (const IndexedFaceSet& mesh : {torus(12, 8), quad_cube(), mixed_polygons(), of_points, of_corners,
-                                       of_faces, cloud, jittered, IndexedFaceSet{}})
+    for (const IndexedFaceSet& mesh : with_scene_channels(
+             {torus(12, 8), quad_cube(), mixed_polygons(), cloud, jittered, IndexedFaceSet{}}))
       for (const bool gzip : {false, true}) {
         WriteOptions options = write_as(format, FileEncoding::kAscii, gzip);
         options.comment = "made { by\na test";

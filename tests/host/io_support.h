@@ -144,4 +144,21 @@ inline std::string read_bytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// These, and shapes with normals, uv and colours of points, of corners and of faces, as scenes hold them.
+inline std::vector<IndexedFaceSet> with_scene_channels(std::vector<IndexedFaceSet> meshes) {
+  IndexedFaceSet of_points = torus(8, 6);
+  const std::size_t n = of_points.points.size();
+  of_points.point_channels = {{"normal", 3, ramp<float>(3 * n, 0.1)},
+                              {"uv", 2, ramp<float>(2 * n, 0.3)},
+                              {"color", 3, ramp<float>(3 * n, 0.001)}};
+  IndexedFaceSet of_corners = quad_cube();
+  of_corners.corner_channels = {{"normal", 3, ramp<float>(72, 0.1)},
+                                {"uv", 2, std::vector<float>(48, 0.5f)},
+                                {"color", 3, ramp<float>(72, 0.01)}};
+  IndexedFaceSet of_faces = mixed_polygons();
+  of_faces.face_channels = {{"normal", 3, ramp<float>(9, 0.1)}, {"color", 3, ramp<float>(9, 0.1)}};
+  for (IndexedFaceSet* mesh : {&of_points, &of_corners, &of_faces}) meshes.push_back(std::move(*mesh));
+  return meshes;
+}
+
 }  // namespace vkmesh::test

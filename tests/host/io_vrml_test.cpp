@@ -175,21 +175,11 @@ TEST_CASE("malformed VRML 2 files are refused where they break", "[io][vrml][bad
 }
 
 TEST_CASE("VRML 2 round trips are lossless for what they hold", "[io][vrml]") {
-  IndexedFaceSet of_points = torus(8, 6);
-  const std::size_t n = of_points.points.size();
-  of_points.point_channels = {{"normal", 3, ramp<float>(3 * n, 0.1)},
-                              {"uv", 2, ramp<float>(2 * n, 0.3)},
-                              {"color", 3, ramp<float>(3 * n, 0.001)}};
-  IndexedFaceSet of_corners = quad_cube();
-  of_corners.corner_channels = {
-      {"normal", 3, ramp<float>(72, 0.1)}, {"uv", 2, Floats(48, 0.5f)}, {"color", 3, ramp<float>(72, 0.01)}};
-  IndexedFaceSet of_faces = mixed_polygons();
-  of_faces.face_channels = {{"normal", 3, ramp<float>(9, 0.1)}, {"color", 3, ramp<float>(9, 0.1)}};
   IndexedFaceSet cloud;
   cloud.points = icosphere(1).points;
   cloud.point_channels = {{"color", 3, ramp<float>(126, 0.005)}};
-  for (const IndexedFaceSet& mesh : {torus(12, 8), quad_cube(), mixed_polygons(), of_points, of_corners,
-                                     of_faces, cloud, IndexedFaceSet{}}) {
+  for (const IndexedFaceSet& mesh :
+       with_scene_channels({torus(12, 8), quad_cube(), mixed_polygons(), cloud, IndexedFaceSet{}})) {
     WriteOptions options = write_as(FileFormat::kVrml2, FileEncoding::kAscii);
     options.comment = "made by a test";
     const std::string bytes = encode(mesh, options);

@@ -165,14 +165,7 @@ class InventorReader {
     VKMESH_TRY(graph_, parse_scene(source_, kNodes, kFields, ignored_, file_.notes));
     State state;
     for (const std::uint32_t root : graph_.roots) VKMESH_CHECK(visit(root, state, 0));
-    Notes notes;
-    VKMESH_TRY(file_.geometry, mesh_.finish(notes));
-    const auto note = [&](std::size_t count, const char* what) {
-      if (count > 0) file_.notes.push_back(std::to_string(count) + " " + what + " ignored");
-    };
-    note(levels_, "levels of detail but the first");
-    note(unchosen_, "children that a 'Switch' does not choose");
-    file_.notes.insert(file_.notes.end(), notes.begin(), notes.end());
+    VKMESH_TRY(file_.geometry, mesh_.finish(file_.notes));
     ignored_.add_to(file_.notes);
     return std::move(file_);
   }
@@ -184,14 +177,9 @@ class InventorReader {
   }
 
   Result<void> visit(std::uint32_t index, State& state, std::size_t depth) {
-    VKMESH_CHECK(mesh_.spend(1));
     const SceneNode& node = graph_.nodes[index];
-    if (node.kind == 0) return {};
-    VKMESH_CHECK(mesh_.spend(node.fields.size()));
-    if (Source::due(visits_++)) VKMESH_CHECK(numbers_.tick(node.type.data()));
-    if (depth > kMaxSceneDepth)
-      return source_.bad_line(node.type.data(),
-                              "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
+    VKMESH_TRY(const bool known, mesh_.enter(node, depth));
+    if (!known) return {};
     switch (node.kind) {
       case kSeparator: {
         State inner = state;
@@ -209,7 +197,7 @@ class InventorReader {
         return visit_switch(node, state, depth);
       case kLod:
         if (node.children.empty()) return {};
-        levels_ += node.children.size() - 1;
+        mesh_.pass_levels(node.children.size() - 1);
         return visit(node.children.front(), state, depth + 1);
       case kIndexedFaceSet:
       case kFaceSet:
@@ -238,7 +226,7 @@ class InventorReader {
     VKMESH_CHECK(numbers_.whole_number(node.field("whichChild"), which));
     if (which == kAll) return visit_all(node, state, depth);
     const bool one = which >= 0 && static_cast<std::uint64_t>(which) < node.children.size();
-    unchosen_ += node.children.size() - (one ? 1 : 0);
+    mesh_.pass_choices(node.children.size() - (one ? 1 : 0));
     return one ? visit(node.children[static_cast<std::size_t>(which)], state, depth + 1) : Result<void>{};
   }
 
@@ -429,7 +417,6 @@ class InventorReader {
   SceneGraph graph_;
   SceneNumbers numbers_;
   SceneMesh mesh_;
-  std::size_t visits_ = 0, levels_ = 0, unchosen_ = 0;
 };
 
 }  // namespace

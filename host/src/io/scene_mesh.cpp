@@ -37,6 +37,17 @@ Result<void> SceneMesh::spend(std::uint64_t steps) {
   return {};
 }
 
+Result<bool> SceneMesh::enter(const SceneNode& node, std::size_t depth) {
+  VKMESH_CHECK(spend(1));
+  if (node.kind == 0) return false;
+  VKMESH_CHECK(spend(node.fields.size()));
+  if (Source::due(visits_++)) VKMESH_CHECK(numbers_.tick(node.type.data()));
+  if (depth > kMaxSceneDepth)
+    return source_.bad_line(node.type.data(),
+                            "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
+  return true;
+}
+
 /// Appends the points of the shape, unless an earlier one had the same under the same transform. Returns the
 /// number of the first.
 Result<std::size_t> SceneMesh::add_block(const SceneShape& shape) {
@@ -454,6 +465,9 @@ void SceneMesh::keep(std::size_t which, Notes& notes) {
 Result<IndexedFaceSet> SceneMesh::finish(Notes& notes) {
   if (!any_shape_)
     return fail(ErrorCode::kUnreadable, "the file holds neither polygons nor points", {source_.name, {}, {}});
+  if (levels_ > 0) notes.push_back(std::to_string(levels_) + " levels of detail but the first ignored");
+  if (unchosen_ > 0)
+    notes.push_back(std::to_string(unchosen_) + " children that a 'Switch' does not choose ignored");
   for (std::size_t which = 0; which < 3; ++which) keep(which, notes);
   for (std::size_t which = 0; which < 3; ++which)
     if (dropped_[which] > 0)

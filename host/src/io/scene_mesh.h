@@ -74,6 +74,13 @@ class SceneMesh {
   /// when it is used up.
   [[nodiscard]] Result<void> spend(std::uint64_t steps);
 
+  /// What stands before every node that is visited: pays for it, reports progress, and refuses what stands in
+  /// too many others. False: the node is of no known kind.
+  [[nodiscard]] Result<bool> enter(const SceneNode& node, std::size_t depth);
+  /// Counts levels of detail, and children of a 'Switch', that are not shown; finish() tells of them.
+  void pass_levels(std::size_t count) { levels_ += count; }
+  void pass_choices(std::size_t count) { unchosen_ += count; }
+
   /// Faces that a list of point indices gives, each ended by -1.
   [[nodiscard]] Result<void> add_indexed_faces(const SceneShape& shape, const SceneIndices* index);
   [[nodiscard]] Result<void> add_indexed_strips(const SceneShape& shape, const SceneIndices* index);
@@ -135,6 +142,7 @@ class SceneMesh {
   std::map<std::pair<const SceneFloats*, std::array<double, 16>>, std::size_t> blocks_;
   std::array<std::size_t, 3> dropped_{};  ///< Shapes whose attribute has too few values.
   std::size_t small_faces_ = 0;
+  std::size_t visits_ = 0, levels_ = 0, unchosen_ = 0;
   bool any_shape_ = false;
 };
 

@@ -64,14 +64,7 @@ class Vrml2Reader {
   Result<MeshFile> read() {
     VKMESH_TRY(graph_, parse_scene(source_, kNodes, kFields, ignored_, file_.notes));
     VKMESH_CHECK(visit_all(graph_.roots, glm::dmat4(1.0), 0));
-    Notes notes;
-    VKMESH_TRY(file_.geometry, mesh_.finish(notes));
-    const auto note = [&](std::size_t count, const char* what) {
-      if (count > 0) file_.notes.push_back(std::to_string(count) + " " + what + " ignored");
-    };
-    note(levels_, "levels of detail but the first");
-    note(unchosen_, "children that a 'Switch' does not choose");
-    file_.notes.insert(file_.notes.end(), notes.begin(), notes.end());
+    VKMESH_TRY(file_.geometry, mesh_.finish(file_.notes));
     ignored_.add_to(file_.notes);
     return std::move(file_);
   }
@@ -88,14 +81,9 @@ class Vrml2Reader {
   }
 
   Result<void> visit(std::uint32_t index, const glm::dmat4& matrix, std::size_t depth) {
-    VKMESH_CHECK(mesh_.spend(1));
     const SceneNode& node = graph_.nodes[index];
-    if (node.kind == 0) return {};
-    VKMESH_CHECK(mesh_.spend(node.fields.size()));
-    if (Source::due(visits_++)) VKMESH_CHECK(numbers_.tick(node.type.data()));
-    if (depth > kMaxSceneDepth)
-      return source_.bad_line(node.type.data(),
-                              "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
+    VKMESH_TRY(const bool known, mesh_.enter(node, depth));
+    if (!known) return {};
     switch (node.kind) {
       case kGroup:
         return visit_field(node.field("children"), matrix, depth);
@@ -112,14 +100,14 @@ class Vrml2Reader {
         const SceneField* choice = node.field("choice");
         if (choice == nullptr) return {};
         const bool one = which >= 0 && static_cast<std::uint64_t>(which) < choice->nodes.size();
-        unchosen_ += choice->nodes.size() - (one ? 1 : 0);
+        mesh_.pass_choices(choice->nodes.size() - (one ? 1 : 0));
         return one ? visit(choice->nodes[static_cast<std::size_t>(which)], matrix, depth + 1)
                    : Result<void>{};
       }
       case kLod: {
         const SceneField* level = node.field("level");
         if (level == nullptr || level->nodes.empty()) return {};
-        levels_ += level->nodes.size() - 1;
+        mesh_.pass_levels(level->nodes.size() - 1);
         return visit(level->nodes.front(), matrix, depth + 1);
       }
       case kShape:
@@ -190,7 +178,6 @@ class Vrml2Reader {
   SceneGraph graph_;
   SceneNumbers numbers_;
   SceneMesh mesh_;
-  std::size_t visits_ = 0, levels_ = 0, unchosen_ = 0;
 };
 
 }  // namespace
