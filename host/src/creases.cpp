@@ -38,9 +38,11 @@ class CreaseGraph {
 
   /// Takes an edge away at both of its ends.
   void remove(std::uint32_t h) {
-    for (const std::uint32_t v : {mesh_.origin(HalfEdgeId(h)).index, mesh_.target(HalfEdgeId(h)).index})
-      std::erase(at_[v], h);
-    std::erase_if(at_, [](const auto& entry) { return entry.second.empty(); });
+    for (const std::uint32_t v : {mesh_.origin(HalfEdgeId(h)).index, mesh_.target(HalfEdgeId(h)).index}) {
+      const auto found = at_.find(v);
+      std::erase(found->second, h);
+      if (found->second.empty()) at_.erase(found);
+    }
   }
 
   [[nodiscard]] std::size_t degree(std::uint32_t v) const {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include <catch2/catch.hpp>
 
@@ -11,20 +10,14 @@
 #include <vkmesh/passes/laplacian_smoothing.h>
 
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 using namespace vkmesh;
+using test::cross;
+using test::dot;
+using test::length;
 
 namespace {
-
-DVec3 cross(DVec3 a, DVec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(DVec3 a, DVec3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-double length(DVec3 a) {
-  return std::sqrt(dot(a, a));
-}
 
 // The paper's formula over all faces, without a grid.
 std::vector<DVec3> textbook(const IndexedFaceSet& set, double spatial, double influence) {
@@ -72,40 +65,11 @@ std::vector<DVec3> textbook(const IndexedFaceSet& set, double spatial, double in
   return result;
 }
 
-// The cube [0, 1]³ with n × n quads a side, each cut into two triangles.
-IndexedFaceSet fine_cube(int n) {
-  IndexedFaceSet set;
-  std::map<std::array<int, 3>, std::uint32_t> numbers;
-  const auto point = [&](std::array<int, 3> at) {
-    const auto [found, added] = numbers.try_emplace(at, static_cast<std::uint32_t>(set.points.size()));
-    if (added)
-      set.points.push_back(
-          Vec3(static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])) /
-          static_cast<float>(n));
-    return found->second;
-  };
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const bool far : {false, true})
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-          const auto at = [&](int di, int dj) {
-            std::array<int, 3> p{};
-            p[axis] = far ? n : 0;
-            p[(axis + (far ? 1 : 2)) % 3] = i + di;
-            p[(axis + (far ? 2 : 1)) % 3] = j + dj;
-            return point(p);
-          };
-          const std::uint32_t a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);
-          set.corners.insert(set.corners.end(), {a, b, c, a, c, d});
-        }
-  return set;
-}
-
 }  // namespace
 
 TEST_CASE("bilateral smoothing agrees with the paper's formula in double precision") {
   std::vector<IndexedFaceSet> shapes = {test::icosphere(3), test::torus(30, 16), test::grid(14, 9),
-                                        fine_cube(6)};
+                                        test::fine_cube(6)};
   std::uint32_t seed = 0;
   for (IndexedFaceSet& set : shapes) {
     const HalfEdgeMesh mesh = test::half_edges(set);
@@ -143,7 +107,7 @@ TEST_CASE("bilateral smoothing agrees with the paper's formula in double precisi
 
 TEST_CASE("bilateral smoothing of a noisy cube keeps its edges, where Laplacian smoothing rounds them") {
   const int n = 24;
-  IndexedFaceSet set = fine_cube(n);
+  IndexedFaceSet set = test::fine_cube(n);
   const std::vector<Vec3> clean = set.points;
   const HalfEdgeMesh mesh = test::half_edges(set);
   const float edge = 1.0f / n;
@@ -185,7 +149,7 @@ TEST_CASE("bilateral smoothing of a noisy cube keeps its edges, where Laplacian 
 }
 
 TEST_CASE("bilateral smoothing with a large influence smooths features too") {
-  const IndexedFaceSet set = fine_cube(12);
+  const IndexedFaceSet set = test::fine_cube(12);
   const HalfEdgeMesh mesh = test::half_edges(set);
   const auto corner = [&](float influence) {
     const auto smoothed = bilateral_smoothing(mesh, set.points, {0.25f, influence});

@@ -14,26 +14,15 @@
 #include <vkmesh/passes/vertex_normals.h>
 
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 using namespace vkmesh;
+using test::area_of;
+using test::cross;
+using test::dot;
+using test::length;
 
 namespace {
-
-DVec3 cross(DVec3 a, DVec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(DVec3 a, DVec3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-double length(DVec3 a) {
-  return std::sqrt(dot(a, a));
-}
-
-DVec3 area_of(const IndexedFaceSet& mesh, std::size_t f) {
-  const auto c = mesh.face(f);
-  const DVec3 p(mesh.points[c[0]]), q(mesh.points[c[1]]), r(mesh.points[c[2]]);
-  return cross(q - p, r - p);
-}
 
 std::vector<IndexedFaceSet> noisy_shapes() {
   std::vector<IndexedFaceSet> shapes = {test::icosphere(4), test::torus(40, 20), test::grid(20, 15),

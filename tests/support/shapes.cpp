@@ -58,6 +58,34 @@ IndexedFaceSet cube() {
   return mesh;
 }
 
+IndexedFaceSet fine_cube(int n) {
+  IndexedFaceSet set;
+  std::map<std::array<int, 3>, std::uint32_t> numbers;
+  const auto point = [&](std::array<int, 3> at) {
+    const auto [found, added] = numbers.try_emplace(at, static_cast<std::uint32_t>(set.points.size()));
+    if (added)
+      set.points.push_back(
+          Vec3(static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])) /
+          static_cast<float>(n));
+    return found->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const bool far : {false, true})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto at = [&](int di, int dj) {
+            std::array<int, 3> p{};
+            p[axis] = far ? n : 0;
+            p[(axis + (far ? 1 : 2)) % 3] = i + di;
+            p[(axis + (far ? 2 : 1)) % 3] = j + dj;
+            return point(p);
+          };
+          const std::uint32_t a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);
+          set.corners.insert(set.corners.end(), {a, b, c, a, c, d});
+        }
+  return set;
+}
+
 IndexedFaceSet icosphere(unsigned level, float radius) {
   const double t = (1.0 + std::sqrt(5.0)) / 2.0;
   std::vector<DVec3> points = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},

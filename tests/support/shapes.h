@@ -15,6 +15,8 @@ IndexedFaceSet tetrahedron();
 IndexedFaceSet cube();
 /// The same with six quads.
 IndexedFaceSet quad_cube();
+/// The same with n × n quads a side, each cut into two triangles: 6 n² + 2 points, 12 n² triangles.
+IndexedFaceSet fine_cube(int n);
 /// Unit sphere from the icosahedron, each triangle split 1:4 `level` times: 10·4^level + 2 points, 20·4^level
 /// faces.
 IndexedFaceSet icosphere(unsigned level, float radius = 1.0f);

@@ -1,0 +1,98 @@
+// Every pass on meshes with triangles without area, edges without length, and points in no face: what comes
+// out is finite.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/node_neighbours.h>
+#include <vkmesh/passes/bilateral_smoothing.h>
+#include <vkmesh/passes/curvatures.h>
+#include <vkmesh/passes/dihedral_angles.h>
+#include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/restore_volume.h>
+#include <vkmesh/passes/surface_measures.h>
+#include <vkmesh/passes/triangle_normals.h>
+#include <vkmesh/passes/vertex_normals.h>
+
+#include "support/shapes.h"
+#include "support/vectors.h"
+
+using namespace vkmesh;
+
+namespace {
+
+std::map<std::string, IndexedFaceSet> degenerate_shapes() {
+  std::map<std::string, IndexedFaceSet> shapes;
+  for (const auto& [name, shape] :
+       {std::pair{"sphere", test::icosphere(2)}, std::pair{"grid", test::grid(6, 5)},
+        std::pair{"torus", test::torus(12, 8)}}) {
+    IndexedFaceSet set = shape;
+    set.points.emplace_back(0.3f, 0.2f, 0.1f);
+    shapes[name + std::string(", points that coincide")] = set;
+    IndexedFaceSet& coincide = shapes[name + std::string(", points that coincide")];
+    for (std::size_t v = 0; v + 1 < set.points.size(); v += 5) coincide.points[v] = coincide.points[v + 1];
+    IndexedFaceSet& slivers = shapes[name + std::string(", three points in a line")];
+    slivers = set;
+    for (std::size_t f = 0; f < set.face_count(); f += 7) {
+      const auto c = set.face(f);
+      slivers.points[c[0]] = 0.5f * (slivers.points[c[1]] + slivers.points[c[2]]);
+    }
+    for (Vec3& p : (shapes[name + std::string(", in a plane")] = set).points) p.z = 0.0f;
+    for (Vec3& p : (shapes[name + std::string(", in a line")] = set).points) p = Vec3(p.x, -p.x, 3 * p.x);
+    for (Vec3& p : (shapes[name + std::string(", in a point")] = set).points) p = Vec3(7.0f, -0.1f, 3e-20f);
+    for (Vec3& p : (shapes[name + std::string(", of no size to speak of")] = set).points) p *= 1e-40f;
+    for (Vec3& p : (shapes[name + std::string(", very large")] = set).points) p *= 0x1p56f;
+  }
+  return shapes;
+}
+
+bool finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+}
+bool finite(const std::vector<Vec3>& values) {
+  return std::all_of(values.begin(), values.end(), [](const Vec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("no pass makes NaN of degenerate triangles, edges without length or isolated points") {
+  for (const auto& [name, set] : degenerate_shapes()) {
+    INFO(name);
+    const HalfEdgeMesh mesh = test::half_edges(set);
+    const NodeNeighbours neighbours = node_neighbours(mesh).value();
+    CHECK(finite(triangle_normals(mesh, set.points).value()));
+    for (const NormalWeights weights : {NormalWeights::kArea, NormalWeights::kAngle, NormalWeights::kUniform})
+      CHECK(finite(vertex_normals(mesh, set.points, {.weights = weights}).value()));
+    const DihedralAngles angles = dihedral_angles(mesh, set.points).value();
+    CHECK((finite(angles.half_edge) && finite(angles.vertex_maximum)));
+    const auto curved = curvatures(neighbours, set.points).value();
+    for (const VertexCurvature& c : curved)
+      CHECK(finite(std::vector<float>{c.mean, c.gaussian, c.area, c.angle_defect}));
+    const SurfaceMeasures measures = surface_measures(mesh, set.points).value();
+    CHECK((std::isfinite(measures.area) && std::isfinite(measures.volume)));
+    CHECK(std::isfinite(test::length(measures.centroid)));
+    for (const SmoothingWeights weights : {SmoothingWeights::kUniform, SmoothingWeights::kCotangent})
+      for (const float mu : {0.0f, -0.53f}) {
+        const auto smoothed =
+            laplacian_smoothing(neighbours, set.points,
+                                {.iterations = 20, .fix_boundary = false, .weights = weights, .mu = mu})
+                .value();
+        CHECK(finite(smoothed));
+        if (mesh.boundary_half_edge_count() == 0)
+          CHECK(finite(restore_volume(mesh, set.points, smoothed).value()));
+      }
+    // Widths have to lie in [2^-40, 2^40].
+    const auto width = static_cast<float>(mean_edge_length(mesh, set.points));
+    const auto smoothed =
+        bilateral_smoothing(mesh, set.points, {std::max(2 * width, 1.0f), std::max(width, 1.0f)});
+    if (width < 0x1p39f)
+      CHECK(finite(smoothed.value()));
+    else
+      CHECK(smoothed.error().code == ErrorCode::kUsage);
+  }
+}
