@@ -79,8 +79,9 @@ TEST_CASE("no pass makes NaN of degenerate triangles, edges without length or is
     for (const SmoothingWeights weights : {SmoothingWeights::kUniform, SmoothingWeights::kCotangent})
       for (const float mu : {0.0f, -0.53f}) {
         const auto smoothed =
-            laplacian_smoothing(neighbours, set.points,
-                                {.iterations = 20, .fix_boundary = false, .weights = weights, .mu = mu})
+            laplacian_smoothing(
+                neighbours, set.points,
+                {.iterations = 20, .boundary = SmoothingBoundary::kFree, .weights = weights, .mu = mu})
                 .value();
         CHECK(finite(smoothed));
         if (mesh.boundary_half_edge_count() == 0)
