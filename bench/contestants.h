@@ -18,6 +18,8 @@
 namespace vkmesh::bench {
 
 inline constexpr unsigned kSmoothingSteps = 10;
+/// The name of what the exact kernels are compared with.
+inline const std::string kBuiltIns = "built-ins";
 
 /// What all contestants are given: triangles, and nothing built from them.
 struct Input {
@@ -96,6 +98,8 @@ void add_reading(Programme& programme, const ReadingFiles& files);
 void add_soup(Programme& programme, const Input& input);
 Result<void> add_host(Programme& programme, const Input& input);
 Result<void> add_device(Programme& programme, const Input& input, const std::string& device);
+Result<void> add_built_ins(Programme& programme, const Input& input, const std::string& device);
+void add_host_built_ins(Programme& programme, const Input& input);
 void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& files);
 void add_meshoptimizer(Programme& programme, const Input& input);
 

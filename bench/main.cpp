@@ -51,8 +51,12 @@ Result<Programme> programme_for(const Options& options, const Input& input, cons
   add_reading(programme, files);
   add_soup(programme, input);
   VKMESH_CHECK(add_host(programme, input));
+  add_host_built_ins(programme, input);
 #ifdef VKMESH_BENCH_DEVICE
-  if (options.device != "none") VKMESH_CHECK(add_device(programme, input, options.device));
+  if (options.device != "none") {
+    VKMESH_CHECK(add_device(programme, input, options.device));
+    VKMESH_CHECK(add_built_ins(programme, input, options.device));
+  }
 #endif
 #ifdef VKMESH_BENCH_OPENMESH
   add_openmesh(programme, input, files);

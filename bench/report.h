@@ -41,7 +41,8 @@ struct Report {
   std::vector<Library> libraries;
   std::vector<Row> rows;  ///< Those of one step stand together.
 
-  /// How many times as long as this row the reference, OpenMesh, takes for the same step; unset without one.
+  /// How many times as long as this row the peer, OpenMesh or built-ins, takes for the same step; unset
+  /// without one.
   [[nodiscard]] std::optional<double> speedup(const Row& row) const;
 };
 

@@ -1,13 +1,15 @@
-# vkmesh_compile_shaders(TARGET SHADER...): compiles each shaders/SHADER.comp with glslangValidator into the header
+# vkmesh_compile_shaders(TARGET SHADER... [DEFINES NAME[=TEXT]...]): compiles each shaders/SHADER.comp with glslangValidator into the header
 # shaders/SHADER.spv.h of the build tree, an array of 32-bit words named k_SHADER_spirv, and lets TARGET include it.
 # A name with an extension, SHADER.vert, is that file; its header is SHADER_vert.spv.h, its array k_SHADER_vert_spirv.
 find_program(VKMESH_GLSLANG glslangValidator REQUIRED)
 
 function(vkmesh_compile_shaders target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" DEFINES)
+  list(TRANSFORM arg_DEFINES PREPEND -D)
   set(source_dir ${PROJECT_SOURCE_DIR}/shaders)
   set(output_dir ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   set(headers)
-  foreach(name IN LISTS ARGN)
+  foreach(name IN LISTS arg_UNPARSED_ARGUMENTS)
     string(REPLACE "." "_" shader ${name})
     set(source ${source_dir}/${name})
     if(shader STREQUAL name)
@@ -18,6 +20,7 @@ function(vkmesh_compile_shaders target)
       OUTPUT ${header}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${output_dir}
       COMMAND ${VKMESH_GLSLANG} --quiet --target-env vulkan1.2 -I${source_dir} -I${PROJECT_SOURCE_DIR}/host/include
+              ${arg_DEFINES}
               --depfile ${header}.d --vn k_${shader}_spirv -o ${header} ${source}
       DEPENDS ${source}
       DEPFILE ${header}.d

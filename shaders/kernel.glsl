@@ -9,7 +9,11 @@
 layout(local_size_x = 128) in;
 
 #include "params.h"
+#ifdef VKMESH_BUILT_INS  // The benchmark's kernels, which are not exact.
+#include "../bench/built_ins.glsl"
+#else
 #include "arithmetic.glsl"
+#endif
 
 // Declares the push constants `p`.
 #define VKMESH_PUSH_CONSTANTS(Params) \

@@ -205,14 +205,15 @@ Result<const Kernel*> Device::kernel(const KernelSource& source) {
   const std::lock_guard lock(kernels_mutex_);
   const auto found = kernels_.find(source.name);
   if (found != kernels_.end()) {
-    if (found->second.spirv != source.spirv.data() ||
-        found->second.kernel->push_constant_bytes_ != source.push_constant_bytes)
+    const bool same = found->second.spirv == nullptr || found->second.spirv == source.spirv.data();
+    if (!same || found->second.kernel->push_constant_bytes_ != source.push_constant_bytes)
       return fail(ErrorCode::kUsage, "two different kernels are named '" + source.name + "'");
     return found->second.kernel.get();
   }
   // The place in the map comes first, so that a made pipeline cannot be lost to an allocation that fails.
   const auto [place, inserted] = kernels_.try_emplace(source.name);
-  auto made = make_kernel(source);
+  auto made = make_kernel(
+      source, {.round_to_nearest_even = rounds_to_nearest_even, .keep_signed_zeros = keeps_signed_zeros});
   if (!made) {
     kernels_.erase(place);
     return tl::unexpected<Error>(std::move(made).error());
@@ -221,7 +222,17 @@ Result<const Kernel*> Device::kernel(const KernelSource& source) {
   return place->second.kernel.get();
 }
 
-Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source) const {
+Result<void> Device::replace_kernel(const KernelSource& source) {
+  const std::lock_guard lock(kernels_mutex_);
+  if (kernels_.contains(source.name))
+    return fail(ErrorCode::kUsage, "the kernel '" + source.name + "' was made already");
+  CachedKernel& place = kernels_[source.name];
+  VKMESH_TRY(place.kernel, make_kernel(source, {}));
+  return {};
+}
+
+Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source,
+                                                    const FloatControls& controls) const {
   VKMESH_TRY(const SpirvKernel shader, inspect_spirv(source.spirv));
   const std::string what = "making kernel '" + source.name + "'";
   // A struct ends on a multiple of its alignment, which the shader's last member need not reach.
@@ -236,9 +247,7 @@ Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source) 
                                        " bytes of push constants are outside [8, " +
                                        std::to_string(max_push_constants) + "]");
 
-  const std::vector<std::uint32_t> spirv = with_float_controls(
-      source.spirv,
-      {.round_to_nearest_even = rounds_to_nearest_even, .keep_signed_zeros = keeps_signed_zeros});
+  const std::vector<std::uint32_t> spirv = with_float_controls(source.spirv, controls);
   auto kernel = std::make_unique<Kernel>();
   kernel->name_ = source.name;
   kernel->push_constant_bytes_ = source.push_constant_bytes;

@@ -13,6 +13,7 @@
 #include <vkmesh/engine/kernel.h>
 #include <vkmesh/result.h>
 
+#include "spirv.h"
 #include "vulkan_functions.h"
 
 namespace vkmesh::detail {
@@ -78,6 +79,9 @@ class Device {
   [[nodiscard]] Result<void> initialise(const PhysicalDevice& physical);
 
   [[nodiscard]] Result<const Kernel*> kernel(const KernelSource& source);
+  /// Gives the kernel of this source, made without float controls, to whoever asks for its name from now on:
+  /// measurements of what exactness costs. Before the first call of kernel() for the name.
+  [[nodiscard]] Result<void> replace_kernel(const KernelSource& source);
   /// What drawing needs, made at the first call. Errors: kNoDevice where the device or its queue cannot draw.
   [[nodiscard]] Result<DrawPipelines*> draw_pipelines();
   [[nodiscard]] Result<void> submit(const VkSubmitInfo& submit, VkFence fence);
@@ -112,12 +116,13 @@ class Device {
   std::atomic<bool> abandoned{false};
 
  private:
-  [[nodiscard]] Result<std::unique_ptr<Kernel>> make_kernel(const KernelSource& source) const;
+  [[nodiscard]] Result<std::unique_ptr<Kernel>> make_kernel(const KernelSource& source,
+                                                            const FloatControls& controls) const;
 
   std::mutex queue_mutex_;
   std::mutex kernels_mutex_;
   struct CachedKernel {
-    const std::uint32_t* spirv = nullptr;
+    const std::uint32_t* spirv = nullptr;  ///< Null: a replacement.
     std::unique_ptr<Kernel> kernel;
   };
   std::map<std::string, CachedKernel> kernels_;

@@ -230,7 +230,8 @@ TEST_CASE("passes equal their references bit for bit on shapes, noisy and scaled
   }
 }
 
-TEST_CASE("passes equal their references where lengths vanish: subnormal, coincident and collinear points") {
+TEST_CASE("passes equal their references where lengths vanish: subnormal, coincident and collinear points",
+          "[long-loops]") {
   IndexedFaceSet set = test::icosphere(3);
   std::mt19937 random(17);
   for (Vec3& p : set.points)
@@ -256,13 +257,14 @@ TEST_CASE("passes leave isolated vertices alone, and take a mesh without faces a
   check_exact(set);
 }
 
-TEST_CASE("passes equal their references bit for bit on the dragon") {
+TEST_CASE("passes equal their references bit for bit on the dragon", "[long-loops]") {
   const IndexedFaceSet set = require(to_indexed_face_set(require(read_mesh(test::dragon()))));
   CHECK(set.face_count() == 871414);
   check_exact(set);
 }
 
-TEST_CASE("bilateral smoothing equals its reference with widths from a part of an edge to the whole mesh") {
+TEST_CASE("bilateral smoothing equals its reference with widths from a part of an edge to the whole mesh",
+          "[long-loops]") {
   for (IndexedFaceSet set : {test::icosphere(3), test::grid(20, 13), test::torus(30, 20)}) {
     test::jitter(set, 0.05f, 3);
     set.points.push_back(Vec3(100.0f, 0.0f, 0.0f));  // Isolated, and far away.

@@ -148,7 +148,7 @@ void compare_with_reference(const Picture& picture, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a sphere's silhouette is a disc of its radius around its centre") {
+TEST_CASE("a sphere's silhouette is a disc of its radius around its centre", "[draw]") {
   IndexedFaceSet sphere = icosphere(5);
   // Off centre, so that a picture that is mirrored or turned is seen.
   for (Vec3& p : sphere.points) p += Vec3(0.5f, 0.25f, 0.0f);
@@ -173,7 +173,7 @@ TEST_CASE("a sphere's silhouette is a disc of its radius around its centre") {
   }
 }
 
-TEST_CASE("perspective shows a sphere as large as its tangent cone") {
+TEST_CASE("perspective shows a sphere as large as its tangent cone", "[draw]") {
   Camera camera = front_view();
   camera.projection = Projection::kPerspective;
   camera.field_of_view = 40;
@@ -186,7 +186,7 @@ TEST_CASE("perspective shows a sphere as large as its tangent cone") {
   CHECK(drawn < area + 2.0 * std::numbers::pi * radius);
 }
 
-TEST_CASE("the normal colours of a cube are its six") {
+TEST_CASE("the normal colours of a cube are its six", "[draw]") {
   IndexedFaceSet box = cube();
   for (Vec3& p : box.points) p -= Vec3(0.5f);
   const DrawStyle style{.mode = DrawMode::kFlat, .colors = DrawColors::kNormal};
@@ -217,7 +217,7 @@ TEST_CASE("the normal colours of a cube are its six") {
   CHECK(faces == 3);
 }
 
-TEST_CASE("what lies behind the camera is not drawn") {
+TEST_CASE("what lies behind the camera is not drawn", "[draw]") {
   const IndexedFaceSet sphere = icosphere(3);
   const std::vector<std::uint32_t> ends = {0, 1, 2, 3, 4, 5};
   const std::vector<float> spacing(sphere.points.size(), 0.1f);
@@ -233,7 +233,7 @@ TEST_CASE("what lies behind the camera is not drawn") {
     }
 }
 
-TEST_CASE("a camera inside a mesh sees it all around") {
+TEST_CASE("a camera inside a mesh sees it all around", "[draw]") {
   Camera camera;
   camera.eye = {0.1, 0, 0};
   camera.target = {0, 0, 1};
@@ -261,7 +261,7 @@ TEST_CASE("an empty mesh gives a plain picture") {
   }
 }
 
-TEST_CASE("flipped faces show the warning colour on request, and are lit like others otherwise") {
+TEST_CASE("flipped faces show the warning colour on request, and are lit like others otherwise", "[draw]") {
   const IndexedFaceSet sphere = icosphere(4), flipped = turned_over(sphere);
   const std::vector<Vec3> normals = value(point_normals(sphere)), inward = value(point_normals(flipped));
   const DrawStyle plain, warning{.show_flipped = true};
@@ -285,7 +285,7 @@ TEST_CASE("flipped faces show the warning colour on request, and are lit like ot
   CHECK(largest_difference(draw(one, plain, front_view(), {.normals = normals}), good) <= 2);
 }
 
-TEST_CASE("light comes from before and above the mesh") {
+TEST_CASE("light comes from before and above the mesh", "[draw]") {
   const IndexedFaceSet sphere = icosphere(4);
   const std::vector<Vec3> normals = value(point_normals(sphere));
   const Picture picture = draw(sphere, {}, front_view(), {.normals = normals});
@@ -294,7 +294,7 @@ TEST_CASE("light comes from before and above the mesh") {
   CHECK(picture.at(64, 64).g > picture.at(92, 64).g + 20);
 }
 
-TEST_CASE("the same input gives the same bytes") {
+TEST_CASE("the same input gives the same bytes", "[draw]") {
   IndexedFaceSet mesh = torus(60, 40);
   jitter(mesh, 0.05f, 3);
   const std::vector<Vec3> normals = value(point_normals(mesh));
@@ -308,7 +308,7 @@ TEST_CASE("the same input gives the same bytes") {
   }
 }
 
-TEST_CASE("a soup is drawn like the face set that it was made from") {
+TEST_CASE("a soup is drawn like the face set that it was made from", "[draw]") {
   const IndexedFaceSet mesh = torus(20, 12);
   const DrawMesh soup = value(DrawMesh::create(test_context(), soup_of(mesh)));
   const DrawStyle style{.mode = DrawMode::kFlat};
@@ -317,7 +317,7 @@ TEST_CASE("a soup is drawn like the face set that it was made from") {
   CHECK(same(draw(soup.geometry(), style, front_view()), picture));
 }
 
-TEST_CASE("vertex and index buffers, and corners one by one, give the same picture") {
+TEST_CASE("vertex and index buffers, and corners one by one, give the same picture", "[draw]") {
   const IndexedFaceSet mesh = torus(40, 24);
   const std::vector<Vec3> normals = value(point_normals(mesh));
   const DrawMeshData data{.normals = normals};
@@ -328,7 +328,7 @@ TEST_CASE("vertex and index buffers, and corners one by one, give the same pictu
   CHECK(largest_difference(indexed, corners) <= 1);
 }
 
-TEST_CASE("a mesh on the device is drawn right after the pass that makes its normals") {
+TEST_CASE("a mesh on the device is drawn right after the pass that makes its normals", "[draw]") {
   const IndexedFaceSet mesh = torus(40, 24);
   DeviceMesh on_device =
       value(DeviceMesh::create(test_context(), half_edges(mesh), mesh.points, {.vertex_normals = true}));
@@ -355,7 +355,7 @@ TEST_CASE("a mesh without corners on the device cannot be drawn") {
   CHECK(refused.error().code == ErrorCode::kUsage);
 }
 
-TEST_CASE("faces, corners and points carry colours of their own") {
+TEST_CASE("faces, corners and points carry colours of their own", "[draw]") {
   // Two triangles: the left one, and the right one.
   IndexedFaceSet mesh;
   mesh.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -390,7 +390,7 @@ TEST_CASE("faces, corners and points carry colours of their own") {
   CHECK((high.r > 2 * high.b && high.g > 2 * high.b));
 }
 
-TEST_CASE("edges are drawn over the surface they lie on, and hidden behind another") {
+TEST_CASE("edges are drawn over the surface they lie on, and hidden behind another", "[draw]") {
   const IndexedFaceSet mesh = fin();
   Camera camera = front_view();
   // From below, where the shared edge is a ridge.
@@ -416,7 +416,7 @@ TEST_CASE("edges are drawn over the surface they lie on, and hidden behind anoth
   CHECK(reds(draw(covered_edge, {}, front_view(), {.edges = {{before, red, 4.0f}}})) > 100);
 }
 
-TEST_CASE("an edge that reaches behind the camera is drawn up to its plane") {
+TEST_CASE("an edge that reaches behind the camera is drawn up to its plane", "[draw]") {
   IndexedFaceSet mesh;
   mesh.points = {{0, -1, 0}, {0, -1, 20}};
   Camera camera = front_view();
@@ -438,7 +438,7 @@ TEST_CASE("an edge that reaches behind the camera is drawn up to its plane") {
   }
 }
 
-TEST_CASE("points are dots, and splats are discs across their normals") {
+TEST_CASE("points are dots, and splats are discs across their normals", "[draw]") {
   IndexedFaceSet cloud;
   cloud.points = {{0, 0, 0}};
   const Picture dot = draw(cloud, {.mode = DrawMode::kPoints, .point_size = 20.0f}, front_view());
@@ -460,7 +460,7 @@ TEST_CASE("points are dots, and splats are discs across their normals") {
   CHECK(edge_on < 40);
 }
 
-TEST_CASE("wireframes show the edges of polygons, and not those that cut them into triangles") {
+TEST_CASE("wireframes show the edges of polygons, and not those that cut them into triangles", "[draw]") {
   IndexedFaceSet quads = quad_cube();
   for (Vec3& p : quads.points) p = (p - Vec3(0.5f)) * 2.0f;
   const Triangulated cut = value(triangulate(quads));
@@ -510,7 +510,7 @@ TEST_CASE("cameras and styles that make no sense are refused") {
   CHECK_FALSE(refused({}, [](Camera&) {}));
 }
 
-TEST_CASE("meshes far from zero keep their shape") {
+TEST_CASE("meshes far from zero keep their shape", "[draw]") {
   // At 2^20 a float resolves an eighth: the sphere is made of multiples of that.
   IndexedFaceSet sphere = icosphere(4, 64.0f);
   for (Vec3& p : sphere.points)
@@ -523,7 +523,7 @@ TEST_CASE("meshes far from zero keep their shape") {
   CHECK(largest_difference(picture(sphere), picture(far_away)) <= 2);
 }
 
-TEST_CASE("pictures look like their references") {
+TEST_CASE("pictures look like their references", "[draw]") {
   IndexedFaceSet mesh = torus(36, 18);
   const std::vector<Vec3> normals = value(point_normals(mesh));
   const std::vector<float> spacing = value(point_spacing(mesh.points));

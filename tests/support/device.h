@@ -12,8 +12,8 @@ namespace vkmesh::test {
 std::string device_name();
 
 /// Options that open the test device with validation and synchronization validation; where
-/// VKMESH_GPU_ASSISTED is 1, with GPU-assisted validation as well. The layer's version 1.3.239 then finds
-/// drawing on llvmpipe reading outside of buffers at addresses that lie inside: leave the drawing tests out.
+/// VKMESH_GPU_ASSISTED is 1, with GPU-assisted validation as well. On llvmpipe tests tagged [draw] and
+/// [long-loops] must then be left out (docs/design.md).
 ContextOptions device_options();
 
 /// One context for the whole run. Fails the test where there is no such device.
