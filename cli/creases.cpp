@@ -90,7 +90,7 @@ void add_creases(CLI::App& app, Program& program) {
       {"both", CreaseKind::kBoth}, {"convex", CreaseKind::kConvex}, {"concave", CreaseKind::kConcave}};
   command->add_option("--kind", options->kind, "Which edges: both (default), convex or concave ones")
       ->type_name("both|convex|concave")
-      ->transform(CLI::CheckedTransformer(kinds).description(""));
+      ->transform(one_of(kinds));
   command->add_flag("--with-boundary", options->boundary, "Boundary edges are creases too");
   command->callback([&program, options, degrees] {
     program.command = "creases";
