@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -130,6 +131,22 @@ void add_consolidate_options(CLI::App& command, CommonOptions& options);
 
 /// Finds out whether a file can be written there at all. "-" can. Errors: kNotWritable.
 [[nodiscard]] Result<void> check_place(const std::string& file);
+
+/// Turns a name into the value that it stands for, and refuses what is none of them.
+template <class Enum>
+[[nodiscard]] CLI::Validator one_of(const std::map<std::string, Enum>& values) {
+  const auto transform = [values](std::string& text) {
+    const auto found = values.find(text);
+    if (found != values.end()) {
+      text = std::to_string(static_cast<unsigned>(found->second));
+      return std::string();
+    }
+    std::string names;
+    for (const auto& [name, value] : values) names += (names.empty() ? "" : ", ") + name;
+    return "'" + text + "' is none of " + names;
+  };
+  return CLI::Validator(transform, "");
+}
 
 /// For options: a number in [low, high], which "nan" is not; a number of decimal digits, at most `high`.
 [[nodiscard]] CLI::Validator number_between(double low, double high);

@@ -1,4 +1,5 @@
 // vkmesh creases: edges where the surface bends, as polylines.
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -18,11 +19,19 @@ struct Degrees {
   double sharp = 40, soft = 20;
 };
 
+// Lines fit into OBJ only, so a name that asks for another format asks for what it would not get.
+Result<void> check_output(const std::string& output) {
+  if (output.empty() || output == "-") return {};
+  if (std::filesystem::path(output).extension() != ".obj")
+    return fail(ErrorCode::kUsage, "creases are written as .obj only", {output, {}, {}});
+  return check_place(output);
+}
+
 Result<void> run(Job& job, CreaseOptions options, const Degrees& degrees) {
   if (degrees.soft > degrees.sharp) return fail(ErrorCode::kUsage, "--soft must not be larger than --sharp");
   options.sharp_angle = degrees.sharp / kDegrees;
   options.soft_angle = degrees.soft / kDegrees;
-  VKMESH_CHECK(job.check_output());
+  VKMESH_CHECK(check_output(job.options().output));
   VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
@@ -58,7 +67,11 @@ void add_creases(CLI::App& app, Program& program) {
       "on.\nThey are joined into chains, which OUT holds as the lines of an OBJ file; without OUT they are "
       "counted.\n\n"
       "Example:\n  vkmesh creases data/cgal/meshes/fandisk.off creases.obj --sharp 35 --soft 15");
-  add_common_options(*command, program.options, true, true);
+  add_common_options(*command, program.options, true, false);
+  command
+      ->add_option("OUT", program.options.output,
+                   "OBJ file to write; - for standard output. Without it creases are only counted")
+      ->type_name("");
   add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<CreaseOptions>();
   const auto degrees = std::make_shared<Degrees>();
@@ -77,7 +90,7 @@ void add_creases(CLI::App& app, Program& program) {
       {"both", CreaseKind::kBoth}, {"convex", CreaseKind::kConvex}, {"concave", CreaseKind::kConcave}};
   command->add_option("--kind", options->kind, "Which edges: both (default), convex or concave ones")
       ->type_name("both|convex|concave")
-      ->transform(CLI::CheckedTransformer(kinds).description(""));
+      ->transform(one_of(kinds));
   command->add_flag("--with-boundary", options->boundary, "Boundary edges are creases too");
   command->callback([&program, options, degrees] {
     program.command = "creases";

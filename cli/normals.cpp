@@ -51,7 +51,7 @@ void add_normals(CLI::App& app, Program& program) {
                    "How much each triangle around a vertex counts: by its area (default), by its angle at\n"
                    "the vertex, or uniform")
       ->type_name("area|angle|uniform")
-      ->transform(CLI::CheckedTransformer(weights).description(""));
+      ->transform(one_of(weights));
   command->callback([&program, options] {
     program.command = "normals";
     program.action = [options](Job& job) { return run(job, *options); };

@@ -143,7 +143,7 @@ void add_smooth(CLI::App& app, Program& program) {
                        "How much each neighbour counts: uniform (default), or cotangent, which moves points\n"
                        "along the normal and keeps the shapes of triangles")
           ->type_name("uniform|cotangent")
-          ->transform(CLI::CheckedTransformer(kinds).description(""));
+          ->transform(one_of(kinds));
   CLI::Option* boundary =
       command
           ->add_option("--boundary", options->boundary,

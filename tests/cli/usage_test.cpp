@@ -12,8 +12,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::vector<std::string> kCommands = {"info",     "convert", "normals", "curvature", "smooth",
-                                            "simplify", "compare", "digest",  "devices"};
+const std::vector<std::string> kCommands = {"info",   "convert",  "normals", "creases", "curvature",
+                                            "smooth", "simplify", "compare", "digest",  "devices"};
 
 /// The words of each line after "Example:" or "Examples:", the program's name aside.
 std::vector<std::vector<std::string>> examples_of(const std::string& help) {
@@ -92,6 +92,29 @@ TEST_CASE("A wrong command line is refused with exit code 2 and a sentence") {
       {{"smooth", in, out, "--lambda", "nan"}, "--lambda"},
       {{"smooth", in, out, "--iterations", "-1"}, "--iterations"},
       {{"smooth", in, out, "--iterations", "ten"}, "--iterations"},
+      {{"smooth", in, out, "--method", "other"}, "--method"},
+      {{"smooth", in, out, "--mu", "0.1"}, "--mu"},
+      {{"smooth", in, out, "--weights", "round"}, "'round' is none of cotangent, uniform"},
+      {{"normals", in, out, "--weights", "0"}, "'0' is none of angle, area, uniform"},
+      {{"smooth", in, out, "--method", "laplacian", "--mu", "-0.5"}, "--mu"},
+      {{"smooth", in, out, "--method", "bilateral", "--mu", "-0.5"}, "--mu"},
+      {{"smooth", in, out, "--method", "bilateral", "--lambda", "0.5"}, "--lambda"},
+      {{"smooth", in, out, "--method", "bilateral", "--iterations", "5"}, "--iterations"},
+      {{"smooth", in, out, "--method", "bilateral", "--weights", "uniform"}, "--weights"},
+      {{"smooth", in, out, "--method", "bilateral", "--boundary", "free"}, "--boundary"},
+      {{"smooth", in, out, "--spatial", "2"}, "--spatial"},
+      {{"smooth", in, out, "--method", "laplacian", "--influence", "2"}, "--influence"},
+      {{"smooth", in, out, "--method", "bilateral", "--spatial", "0"}, "--spatial"},
+      {{"curvature", in, out, "--kind", "largest"}, "--kind"},
+      {{"creases", in, scratch.path("out.obj"), "--sharp", "181"}, "--sharp"},
+      {{"creases", in, scratch.path("out.obj"), "--soft", "-1"}, "--soft"},
+      {{"creases", in, scratch.path("out.obj"), "--soft", "50"}, "--soft"},
+      {{"creases", in, scratch.path("out.obj"), "--min-length", "-1"}, "--min-length"},
+      {{"creases", in, scratch.path("out.obj"), "--kind", "round"},
+       "'round' is none of both, concave, convex"},
+      {{"creases", in, out}, ".obj"},
+      {{"creases", in, scratch.path("out.obj.gz")}, ".obj"},
+      {{"creases", in, "-", "--json"}, "--json"},
       {{"simplify", in, out}, "--ratio"},
       {{"simplify", in, out, "--ratio", "2"}, "--ratio"},
       {{"simplify", in, out, "--ratio", "nan"}, "--ratio"},

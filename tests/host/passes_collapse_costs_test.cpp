@@ -233,6 +233,27 @@ TEST_CASE("collapse costs of a cube are those worked out by hand") {
   }
 }
 
+TEST_CASE("collapse costs of two planes: where they meet, unless that is far away") {
+  IndexedFaceSet set;
+  set.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  set.corners = {0, 1, 2};
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  const auto cost = [&](const VertexQuadric& p, const VertexQuadric& q) {
+    return double{collapse_costs(mesh, set.points, std::vector<VertexQuadric>{p, q, {}}).value()[0]};
+  };
+  // y = slope · x through the vertex.
+  const auto sloping = [](float slope) {
+    const float norm = 1 + slope * slope;
+    return VertexQuadric{slope * slope / norm, -slope / norm, 0, 1 / norm, 0, 0};
+  };
+  // At x = 1/2; at x = -4, which is 4.5 edges from the middle of the edge, so that it is the middle that
+  // counts.
+  CHECK(cost(sloping(0.25f), sloping(-0.25f)) < 1e-6);
+  CHECK(cost(sloping(0.1f), sloping(0.08f)) == Approx(0.0025 / 1.01 + 0.0016 / 1.0064).epsilon(1e-4));
+  // Beside a plane of 2^20 times the weight, which both have in common, other directions still count.
+  CHECK(cost({1, 0, 0, 0x1p18f, 0, 0}, {3, 0, 0, 0x1p18f, 0, 0}) == Approx(0.75).epsilon(1e-4));
+}
+
 TEST_CASE("collapse costs in a plane are nothing, but for the corners of its boundary") {
   IndexedFaceSet set = test::grid(8, 6);
   const Result3 flat = costs_of(set, {.placement = CollapsePlacement::kMidpoint});

@@ -126,7 +126,7 @@ TEST_CASE("restored volume: nothing moves where there is no volume, or one insid
   const HalfEdgeMesh mesh = test::half_edges(set);
   std::vector<Vec3> flat = set.points, mirrored = set.points, point(set.points.size(), Vec3(3.0f));
   for (Vec3& p : flat) p.z = 0.25f;
-  for (Vec3& p : mirrored) p.x = -p.x;
+  for (Vec3& p : mirrored) p = Vec3(-0.75f * p.x, p.y, p.z);
   for (const auto& nothing : {flat, point, mirrored}) {
     CHECK(restore_volume(mesh, set.points, nothing).value() == nothing);
     CHECK(restore_volume(mesh, nothing, set.points).value() == set.points);
