@@ -50,11 +50,23 @@ Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& me
       });
       offsets.push_back(static_cast<std::uint32_t>(ends.size() / 2));
     };
+    const auto require_few = [&](const std::vector<std::uint32_t>& offsets,
+                                 const std::vector<std::uint32_t>& ends) -> Result<void> {
+      const std::size_t ranges = offsets[offsets.size() - 1] - offsets[offsets.size() - 2];
+      std::uint64_t rounds = ranges;
+      for (std::size_t i = ends.size() - 2 * ranges; i < ends.size(); i += 2) rounds += ends[i + 1] - ends[i];
+      if (rounds < context.info().loop_rounds) return {};
+      return fail(ErrorCode::kUnsuitable, "some " + std::to_string(rounds) +
+                                              " faces lie near one vertex, too many for the loops of " +
+                                              context.info().name +
+                                              ": take a smaller spatial width, or compute on the CPU");
+    };
     for (std::size_t cell = 0; cell < grid.vertices.cell_count(); ++cell) {
       for (std::size_t i = grid.vertices.cell_begin(cell); i < grid.vertices.cell_end(cell); ++i)
         cells[i] = static_cast<std::uint32_t>(cell);
       add(grid.vertices.key_of_cell(cell), 1, near_offsets, near_ends);
       add(grid.vertices.key_of_cell(cell), 2, far_offsets, far_ends);
+      VKMESH_CHECK(require_few(far_offsets, far_ends));
     }
     VKMESH_CHECK(fill(context, nearby.face_order_, face_order, "faces by place"));
     VKMESH_CHECK(fill(context, nearby.vertex_order_, vertex_order, "vertices by place"));

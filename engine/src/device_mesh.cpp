@@ -91,6 +91,17 @@ struct Sizes {
   }
 };
 
+/// Offsets of lists that a thread goes through, one for each vertex.
+Result<void> require_short(const Context& context, const std::vector<std::uint32_t>& offsets) {
+  for (std::size_t v = 0; v + 1 < offsets.size(); ++v)
+    if (offsets[v + 1] - offsets[v] >= context.info().loop_rounds)
+      return fail(ErrorCode::kUnsuitable, "vertex " + std::to_string(v) + " has " +
+                                              std::to_string(offsets[v + 1] - offsets[v]) +
+                                              " neighbours, too many for the loops of " +
+                                              context.info().name + ": compute on the CPU");
+  return {};
+}
+
 Result<void> make(Context& context, Buffer& buffer, std::uint64_t bytes, const char* name) {
   if (bytes == 0) return {};
   VKMESH_TRY(buffer, Buffer::create(context, bytes, BufferMemory::kDevice, name));
@@ -143,6 +154,8 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
     if (needs_vertex_corners(passes)) {
       VKMESH_TRY(corners, vertex_corners(mesh));
     }
+    VKMESH_CHECK(require_short(context, neighbours.offsets));
+    VKMESH_CHECK(require_short(context, corners.offsets));
     const Sizes bytes(mesh, passes, neighbours.ids.size());
     VKMESH_CHECK(make(context, result.positions_, bytes.positions, "positions"));
     VKMESH_CHECK(result.upload_positions(positions));

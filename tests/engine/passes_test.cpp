@@ -2,6 +2,7 @@
 // reference.)
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -271,6 +272,33 @@ TEST_CASE("bilateral smoothing equals its reference with widths from a part of a
     for (const double widths : {0.02, 0.5, 3.0, 40.0})
       check_exact_bilateral(test::half_edges(set), set.points, widths);
   }
+}
+
+TEST_CASE("a vertex of more neighbours than the device's loops have rounds is refused, and not cut short") {
+  constexpr std::uint32_t kSides = 70000;
+  IndexedFaceSet fan;
+  fan.points.push_back(Vec3(0.0f, 0.0f, 1.0f));
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 6.283185307179586 * i / kSides;
+    fan.points.push_back(
+        Vec3(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0.0f));
+    for (const std::uint32_t v : {0u, 1 + i, 1 + (i + 1) % kSides}) fan.corners.push_back(v);
+  }
+  const HalfEdgeMesh mesh = test::half_edges(fan);
+  for (const MeshPasses& passes :
+       {MeshPasses{.vertex_normals = true}, MeshPasses{.laplacian_smoothing = true}}) {
+    const auto device = DeviceMesh::create(test::test_context(), mesh, fan.points, passes);
+    if (test::test_context().info().loop_rounds > kSides) {
+      CHECK(device);
+    } else {
+      REQUIRE_FALSE(device);
+      CHECK(device.error().code == ErrorCode::kUnsuitable);
+      CHECK_THAT(device.error().message, Catch::Contains("vertex 0 has 70000 neighbours"));
+    }
+  }
+  const BilateralSmoothingOptions wide{.spatial = 4.0f, .influence = 1.0f};
+  const auto nearby = NearbyFaces::create(test::test_context(), mesh, fan.points, wide);
+  CHECK(nearby.has_value() == (test::test_context().info().loop_rounds > kSides));
 }
 
 TEST_CASE("normals after smoothing in one submission are those of the smoothed positions") {

@@ -16,7 +16,8 @@ namespace vkmesh {
 /// memory, with room for what the pass computes of them on the way.
 class NearbyFaces {
  public:
-  /// O(n log n). Errors: as bilateral_smoothing(); kOutOfMemory; kNoDevice.
+  /// O(n log n). Errors: as bilateral_smoothing(); kUnsuitable where more faces than DeviceInfo::loop_rounds
+  /// lie near a vertex; kOutOfMemory; kNoDevice.
   [[nodiscard]] static Result<NearbyFaces> create(Context& context, const HalfEdgeMesh& mesh,
                                                   std::span<const Vec3> positions,
                                                   const BilateralSmoothingOptions& options);

@@ -31,8 +31,10 @@ struct DeviceInfo {
   DeviceType type = DeviceType::kOther;
   std::string api_version;   ///< "1.3.230".
   std::uint64_t memory = 0;  ///< Bytes of device-local memory.
-  bool usable = false;       ///< It has what the engine requires.
-  std::string rejected;      ///< Why not, where `usable` is false.
+  /// A thread leaves all its loops after so many rounds of them together: 65535 on Mesa's llvmpipe.
+  std::uint64_t loop_rounds = UINT64_MAX;
+  bool usable = false;   ///< It has what the engine requires.
+  std::string rejected;  ///< Why not, where `usable` is false.
 };
 
 struct ContextOptions {

@@ -37,7 +37,8 @@ struct MeshPasses {
 class DeviceMesh {
  public:
   /// Uploads connectivity and positions. O(half-edges).
-  /// Errors: kUnsuitable unless triangles, and for a coordinate out of range (see prepare_positions());
+  /// Errors: kUnsuitable unless triangles, for a coordinate out of range (see prepare_positions()), and for a
+  /// vertex of as many neighbours as DeviceInfo::loop_rounds;
   /// kUsage unless one position for each vertex; kOutOfMemory; kNoDevice.
   [[nodiscard]] static Result<DeviceMesh> create(Context& context, const HalfEdgeMesh& mesh,
                                                  std::span<const Vec3> positions, const MeshPasses& passes);
