@@ -88,7 +88,9 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
     faces_[f] = {{a, b, c}, 0, {}, f};
   }
   // The half-edges that leave each vertex.
-  LargeArray<std::uint32_t> leaving(corners.size());
+  constexpr std::size_t kAhead = 64;
+  LargeArray<std::uint32_t> leaving(corners.size() + kAhead);
+  for (std::size_t i = 0; i < kAhead; ++i) leaving[corners.size() + i] = 0;
   const std::vector<std::uint32_t> offsets = counting_sort(
       vertex_count, corners.size(), [&](std::size_t c) { return corners[c]; },
       [&](std::size_t slot, std::size_t c) { leaving[slot] = static_cast<std::uint32_t>(c + c / 3); });
@@ -104,6 +106,9 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
     if (count == 0) continue;
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t h = leaving[first + i], n = next(h), p = previous(h);
+      const std::uint32_t ahead = leaving[first + i + kAhead];
+      prefetch(&corners[ahead - ahead / 4]);
+      prefetch(&faces_[ahead / 4]);
       fan.set(i, corners[n - n / 4], corners[p - p / 4]);
     }
     if (!fan.match(count)) return false;
