@@ -1,5 +1,6 @@
 #include "decimation/quadric_sums.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -22,8 +23,11 @@ void add_plane(CollapseVertex& v, const std::array<float, 3>& n, float w) {
 }  // namespace
 
 void sum_quadrics(CollapseMesh& mesh, float boundary_weight) {
+  constexpr std::uint32_t kAhead = 16;
+  const auto last = static_cast<std::uint32_t>(mesh.face_count()) - 1;
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     const CollapseMesh::Face& face = mesh.face(4 * f);
+    for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin) prefetch(&mesh.vertices[v]);
     std::array<CollapseVertex*, 3> v{};
     for (std::size_t i = 0; i < 3; ++i) v[i] = &mesh.vertices[face.origin[i]];
     const auto side = [&](std::size_t i) {
