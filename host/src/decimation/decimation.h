@@ -131,6 +131,7 @@ class Decimation {
 
   // All edges with their costs.
   void fill() {
+    constexpr std::uint32_t kAhead = 64;
     std::array<std::uint32_t, EdgeBatch::kSize + 1> ids{};
     std::size_t count = 0;
     const auto flush = [&] {
@@ -138,7 +139,9 @@ class Decimation {
       for (std::size_t i = 0; i < count; ++i) queue_.fill(ids[i], batch_.cost[i]);
       count = 0;
     };
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
+    const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
+    for (std::uint32_t f = 0; f <= last; ++f) {
+      for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin) prefetch(&vertices_[v]);
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
         const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
         mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);
@@ -146,6 +149,7 @@ class Decimation {
         count += first ? 1 : 0;
         if (count == EdgeBatch::kSize) flush();
       }
+    }
     flush();
     queue_.start();
   }
