@@ -22,17 +22,21 @@ namespace vkmesh::detail {
 
 // Removals by quadric error: where the point goes, and what is known of the cost.
 
+/// Which edges of the kept vertex may cost less after a collapse.
+enum class MayFall { kNone, kOfGone, kAll };
+
 struct OptimalCollapse {
-  static constexpr bool kMayFall = false;
+  static constexpr MayFall kMayFall = MayFall::kNone;
   static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
 };
 struct MidpointCollapse {
-  static constexpr bool kMayFall = true;
+  static constexpr MayFall kMayFall = MayFall::kAll;
   static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
 };
-/// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q.
+/// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those that
+/// q had before only cost more.
 struct EndCollapse {
-  static constexpr bool kMayFall = true;
+  static constexpr MayFall kMayFall = MayFall::kOfGone;
   static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
 };
 
@@ -370,7 +374,9 @@ class Decimation {
           std::max(outcome_.error2, static_cast<double>(due.cost) / static_cast<double>(kept.weight));
     join(to_a, from_a);
     join(to_b, from_b);
-    if constexpr (Removal::kMayFall) refresh(q_now);
+    if constexpr (Removal::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
+    if constexpr (Removal::kMayFall == MayFall::kOfGone)
+      refresh(q_now, keep_p ? rings.q.size() : rings.p.size());
     revive(q_now, rings);
   }
 
@@ -408,22 +414,17 @@ class Decimation {
     }
   }
 
-  // The edges at v cost something else now.
-  void refresh(std::uint32_t v) {
-    const std::uint32_t start = vertices_[v].leading;
-    std::uint32_t h = start;
-    bool more = true;
-    while (more) {
+  // The first `edges` edges at v cost something else now. A vertex that has absorbed another has the edges of
+  // that one first.
+  void refresh(std::uint32_t v, std::size_t edges) {
+    std::uint32_t h = vertices_[v].leading;
+    while (edges > 0) {
       std::array<std::uint32_t, EdgeBatch::kSize> ids;
       std::size_t count = 0;
-      while (more && count < ids.size()) {
-        const std::uint32_t r = mesh_.target(h), t = mesh_.twin(h);
-        if (r != mesh_.apex() && (mesh_.queued(h) || mesh_.queued(t))) {
-          const std::uint32_t id = mesh_.queued(h) ? h : t;
-          ids[count++] = id;
-        }
+      for (; edges > 0 && count < ids.size(); --edges) {
+        const std::uint32_t t = mesh_.twin(h);
+        if (mesh_.queued(h) || mesh_.queued(t)) ids[count++] = mesh_.queued(h) ? h : t;
         h = mesh_.around_vertex(h);
-        more = h != start;
       }
       evaluate(std::span(ids).first(count));
       for (std::size_t i = 0; i < count; ++i) queue_.insert(ids[i], batch_.cost[i]);
