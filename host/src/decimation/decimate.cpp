@@ -10,6 +10,7 @@
 
 #include "catching.h"
 #include "decimation/collapse_mesh.h"
+#include "decimation/collapse_order.h"
 #include "decimation/collapse_queues.h"
 #include "decimation/decimation.h"
 #include "decimation/frame.h"
@@ -22,22 +23,24 @@ namespace {
 
 using namespace detail;
 
-Result<Outcome> run(CollapseMesh& mesh, const DecimateOptions& options, const Limits& limits,
-                    std::size_t vertices, const Progress& progress) {
-  const bool ends = options.operation == DecimateOperation::kHalfEdgeCollapse ||
-                    options.placement == CollapsePlacement::kEndpoint;
-  const auto decimated = [&](auto& decimation) { return decimation.run(progress); };
-  if (ends) {
-    Decimation<EndCollapse, LazyQueue> d(mesh, limits, mesh.face_count(), vertices, options.keep_history);
-    return decimated(d);
-  }
-  if (options.placement == CollapsePlacement::kMidpoint) {
-    Decimation<MidpointCollapse, ExactQueue> d(mesh, limits, mesh.face_count(), vertices,
-                                               options.keep_history);
-    return decimated(d);
-  }
-  Decimation<OptimalCollapse, LazyQueue> d(mesh, limits, mesh.face_count(), vertices, options.keep_history);
-  return decimated(d);
+template <class Removal, class Queue>
+Result<Outcome> run(CollapseMesh& mesh, bool keep_events, const Limits& limits, std::size_t vertices,
+                    const Progress& progress) {
+  Decimation<Removal, Queue> decimation(mesh, limits, mesh.face_count(), vertices, keep_events);
+  return decimation.run(progress);
+}
+
+Result<Outcome> run(CollapseMesh& mesh, const DecimateOptions& options, CollapseOrder order,
+                    const Limits& limits, std::size_t vertices, const Progress& progress) {
+  const bool history = options.keep_history, exact = order == CollapseOrder::kExact;
+  if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
+      options.placement == CollapsePlacement::kEndpoint)
+    return (exact ? run<EndCollapse, ExactQueue> : run<EndCollapse, LazyQueue>)(mesh, history, limits,
+                                                                                vertices, progress);
+  if (options.placement == CollapsePlacement::kMidpoint)
+    return run<MidpointCollapse, ExactQueue>(mesh, history, limits, vertices, progress);
+  return (exact ? run<OptimalCollapse, ExactQueue> : run<OptimalCollapse, LazyQueue>)(mesh, history, limits,
+                                                                                      vertices, progress);
 }
 
 Result<void> check(const DecimateOptions& options, std::size_t vertices) {
@@ -60,7 +63,8 @@ Result<void> check(const DecimateOptions& options, std::size_t vertices) {
 template <class Point>
 Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               std::span<const std::uint32_t> corners,
-                                              const DecimateOptions& options, const Progress& progress) {
+                                              const DecimateOptions& options, CollapseOrder order,
+                                              const Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
   VKMESH_CHECK(check(options, points.size()));
   if (corners.size() % 3 != 0) return fail(ErrorCode::kUsage, "decimation takes three corners a face");
@@ -82,12 +86,12 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   };
 
   CollapseMesh mesh;
-  std::vector<std::uint32_t> order, leading;
+  std::vector<std::uint32_t> vertex_order, leading;
   bool manifold = false;
   if (detail::lacks_locality(points.size(), corners)) {
-    order = detail::morton_order(points.size(), local);
+    vertex_order = detail::morton_order(points.size(), local);
     std::vector<std::uint32_t> rank(points.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
+    for (std::uint32_t i = 0; i < vertex_order.size(); ++i) rank[vertex_order[i]] = i;
     const std::size_t faces = corners.size() / 3;
     std::vector<std::uint32_t> face_order(faces), sorted(corners.size());
     detail::counting_sort(
@@ -112,7 +116,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   std::size_t used = 0;
   for (std::uint32_t v = 0; v < points.size(); ++v) {
     CollapseVertex& vertex = mesh.vertices[v];
-    const std::uint32_t source = order.empty() ? v : order[v];
+    const std::uint32_t source = vertex_order.empty() ? v : vertex_order[v];
     vertex = {};
     vertex.position = local(source);
     vertex.leading = leading[v];
@@ -133,8 +137,8 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
       for (std::uint32_t i = 0; i < 3; ++i)
         if (mesh.is_ghost(mesh.twin(4 * f + i)))
           mesh.vertices[mesh.origin(4 * f + i)].source |= CollapseVertex::kLocked;
-  const bool in_order = order.empty();
-  order = {};
+  const bool in_order = vertex_order.empty();
+  vertex_order = {};
   sum_quadrics(mesh, options.boundary == DecimateBoundary::kInShape
                          ? static_cast<float>(options.boundary_weight)
                          : 0.0f);
@@ -155,7 +159,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (options.time_limit)
     limits.seconds =
         *options.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  VKMESH_TRY(Outcome outcome, run(mesh, options, limits, used, progress));
+  VKMESH_TRY(Outcome outcome, run(mesh, options, order, limits, used, progress));
   return gather(mesh, points, in_order, frame, outcome);
 }
 
@@ -167,7 +171,7 @@ Result<BasicDecimated<Point>> decimate_mesh(const HalfEdgeMesh& mesh, std::span<
   if (positions.size() != mesh.vertex_count())
     return fail(ErrorCode::kUsage, "decimation needs one position for each vertex");
   return detail::catching([&]() -> Result<BasicDecimated<Point>> {
-    return decimate_arrays(positions, mesh.origins(), options, progress);
+    return decimate_arrays(positions, mesh.origins(), options, CollapseOrder::kFast, progress);
   });
 }
 
@@ -199,8 +203,13 @@ Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh, std::span<const
 
 Result<Decimated> decimate(const TriangleSurface& surface, const DecimateOptions& options,
                            const Progress& progress) {
+  return detail::decimate(surface, options, CollapseOrder::kFast, progress);
+}
+
+Result<Decimated> detail::decimate(const TriangleSurface& surface, const DecimateOptions& options,
+                                   CollapseOrder order, const Progress& progress) {
   return detail::catching([&]() -> Result<Decimated> {
-    return decimate_arrays(surface.points, surface.corners, options, progress);
+    return decimate_arrays(surface.points, surface.corners, options, order, progress);
   });
 }
 

@@ -33,8 +33,8 @@ struct MidpointCollapse {
   static constexpr MayFall kMayFall = MayFall::kAll;
   static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
 };
-/// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those that
-/// q had before only cost more.
+/// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those
+/// that q had before only cost more.
 struct EndCollapse {
   static constexpr MayFall kMayFall = MayFall::kOfGone;
   static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
@@ -300,7 +300,8 @@ class Decimation {
   [[nodiscard]] bool link_condition(const Rings& rings, std::uint32_t q) {
     if (rings.p.front() == rings.p.back()) return false;
     if (rings.p.size() == 2 && rings.q.size() == 2) return false;
-    const Ring inner_p = rings.p.subspan(1, rings.p.size() - 2), inner_q = rings.q.subspan(1, rings.q.size() - 2);
+    const Ring inner_p = rings.p.subspan(1, rings.p.size() - 2),
+               inner_q = rings.q.subspan(1, rings.q.size() - 2);
     std::uint64_t seen = 0;  // a set of hashes: most rings need no second look
     const auto bit = [](std::uint32_t v) { return std::uint64_t{1} << (v * 0x9e3779b1u >> 26); };
     for (const std::uint32_t v : inner_p) seen |= bit(v);

@@ -17,8 +17,8 @@ namespace vkmesh::detail {
 /// faces follow each other. Two corners at the same place, or one at no place, span nothing.
 class FaceTurns {
  public:
-  /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the other
-  /// ends. Returns the flags of all these vertices.
+  /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the
+  /// other ends. Returns the flags of all these vertices.
   std::uint32_t set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
                     std::span<const std::uint32_t> around_q);
 
@@ -26,25 +26,18 @@ class FaceTurns {
   /// neighbours come to stand against each other, when p, which lies at `p`, and q at `q` move to p + x. Both
   /// rings need at least two vertices, and must not be the same face.
   bool folds_over(const std::array<float, 3>& p, const std::array<float, 3>& q, const std::array<float, 3>& x,
-                  float cos_deviation);
+                  float cos_deviation) const;
 
  private:
-  static constexpr std::size_t kBlock = 16;
   using Vector = std::array<float, 3>;
 
-  unsigned turn(const Vector& p, const Vector& d, const Vector& x, float cos_deviation);
-  [[nodiscard]] Vector corner(std::size_t k, const Vector& p) const {
-    return {x_[k] - p[0], y_[k] - p[1], z_[k] - p[2]};
-  }
-  [[nodiscard]] Vector area_before(std::size_t face, const Vector& p, const Vector& d) const;
-  [[nodiscard]] bool disagrees(const Vector& p, const Vector& d) const;
-  [[nodiscard]] bool more_against(const Vector& p, const Vector& d) const;
+  [[nodiscard]] Vector area(std::size_t face, const Vector& p, const Vector& x) const;
+  [[nodiscard]] bool disagrees(const Vector& p, const Vector& d, const Vector& x) const;
+  [[nodiscard]] bool more_against(const Vector& p, const Vector& d, const Vector& x) const;
 
   using Lanes = std::vector<float>;
   Lanes x_, y_, z_;  // the corners: those around p, then those around q, and the first two again
-  // Normals after the collapse, over the squared sides, and their squared lengths; 0 where there is no area.
-  Lanes ax_, ay_, az_, length2_;
-  std::size_t at_p_ = 0, faces_ = 0;  // faces at p, which come first, and all; the first stands behind the last
+  std::size_t at_p_ = 0, faces_ = 0;  // faces at p, which come first, and all
 };
 
 }  // namespace vkmesh::detail

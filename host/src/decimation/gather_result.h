@@ -40,6 +40,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   const auto& vertices = mesh.vertices;
   const std::size_t n = points.size();
   constexpr std::uint32_t kMask = CollapseVertex::kSourceMask;
+  const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
   std::vector<std::uint32_t>& new_vertex = result.vertex_map;
   new_vertex.assign(n, kInvalid);
   std::vector<std::uint32_t> absorbed(n, kInvalid), alive;  // `absorbed`: by which vertex, both of the input
@@ -50,7 +51,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
       new_vertex[vertex.source & kMask] = 0;
     } else if (vertex.leading != kInvalid) {
       const std::uint32_t by = vertex.leading & ~CollapseVertex::kGone;
-      absorbed[vertex.source & kMask] = in_order ? by : vertices[by].source & kMask;
+      absorbed[vertex.source & kMask] = source_of(by);
     }
   }
   for (std::uint32_t v = 0; v < n; ++v) {
@@ -98,7 +99,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     const CollapseMesh::Face& face = mesh.face(4 * f);
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t h = 3 * new_face[face.source] + i, t = face.twin[i];
-      origin[h] = new_vertex[vertices[face.origin[i]].source & kMask];
+      origin[h] = new_vertex[source_of(face.origin[i])];
       twin[h] = mesh.is_ghost(t) ? kInvalid : 3 * new_face[mesh.face(t).source] + t % 4;
     }
   }

@@ -27,7 +27,8 @@ void sum_quadrics(CollapseMesh& mesh, float boundary_weight) {
   const auto last = static_cast<std::uint32_t>(mesh.face_count()) - 1;
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     const CollapseMesh::Face& face = mesh.face(4 * f);
-    for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin) prefetch(&mesh.vertices[v]);
+    for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin)
+      prefetch(&mesh.vertices[v]);
     std::array<CollapseVertex*, 3> v{};
     for (std::size_t i = 0; i < 3; ++i) v[i] = &mesh.vertices[face.origin[i]];
     const auto side = [&](std::size_t i) {
