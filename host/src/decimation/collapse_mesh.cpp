@@ -87,9 +87,11 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
     if (a == b || b == c || c == a) return false;
     faces_[f] = {{a, b, c}, 0, {}, f};
   }
-  // The half-edges that leave each vertex.
-  constexpr std::size_t kAhead = 64;
-  LargeArray<std::uint32_t> leaving(corners.size() + kAhead);
+  // The half-edges that leave each vertex, where the vertices will be: that is memory to be had at no cost.
+  constexpr std::size_t kAhead = 64, kWords = sizeof(CollapseVertex) / sizeof(std::uint32_t);
+  vertices =
+      LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners.size() + kAhead + kWords - 1) / kWords));
+  auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
   for (std::size_t i = 0; i < kAhead; ++i) leaving[corners.size() + i] = 0;
   const std::vector<std::uint32_t> offsets = counting_sort(
       vertex_count, corners.size(), [&](std::size_t c) { return corners[c]; },

@@ -71,7 +71,7 @@ class CollapseMesh {
   /// Fills the faces, and sets `leading` to a half-edge that leaves each
   /// vertex, kInvalid where there is none; corners must be < vertex_count. False when the faces form no
   /// oriented manifold of simple triangles; the mesh is then of no use. O(n), and O(d log d) for each vertex
-  /// of many faces d. The vertices are yet to be made.
+  /// of many faces d. The vertices have room, and no values yet.
   [[nodiscard]] bool build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
                            std::vector<std::uint32_t>& leading);
 

@@ -71,12 +71,16 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (corners.size() / 3 > CollapseMesh::kMaxFaces || points.size() > CollapseMesh::kMaxVertices)
     return fail(ErrorCode::kUnsuitable,
                 "decimation takes at most 2^28 vertices, 2^29 faces and boundary edges");
-  for (const std::uint32_t c : corners)
+  std::vector<std::uint8_t> in_use(points.size(), 0);
+  for (const std::uint32_t c : corners) {
     if (c >= points.size()) return fail(ErrorCode::kUsage, "a corner names no point");
+    in_use[c] = 1;
+  }
   for (const Point& p : points)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
-  VKMESH_TRY(const Frame frame, frame_of(points, corners));
+  VKMESH_TRY(const Frame frame, frame_of(points, std::span<const std::uint8_t>(in_use)));
+  in_use = {};
   const auto local = [&](std::size_t v) {
     std::array<float, 3> x;
     for (int k = 0; k < 3; ++k)
@@ -112,7 +116,6 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (!manifold)
     return fail(ErrorCode::kUnsuitable, "decimation takes oriented manifolds only: consolidate first");
 
-  mesh.vertices = detail::LargeArray<CollapseVertex>(points.size() + 1);
   std::size_t used = 0;
   for (std::uint32_t v = 0; v < points.size(); ++v) {
     CollapseVertex& vertex = mesh.vertices[v];

@@ -20,17 +20,20 @@ struct Frame {
   double diagonal = 0;  // of the bounding box, in units of the input
 };
 
+/// Of the points that are used.
 template <class Point>
-Result<Frame> frame_of(std::span<const Point> points, std::span<const std::uint32_t> corners) {
+Result<Frame> frame_of(std::span<const Point> points, std::span<const std::uint8_t> used) {
   DVec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (const std::uint32_t c : corners)
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (used[v] == 0) continue;
     for (int k = 0; k < 3; ++k) {
-      const double x = points[c][k];
+      const double x = points[v][k];
       low[k] = std::min(low[k], x);
       high[k] = std::max(high[k], x);
     }
+  }
   Frame frame;
-  if (corners.empty()) return frame;
+  if (low.x > high.x) return frame;  // nothing is used
   const DVec3 size = high - low;
   const double largest = std::max({size.x, size.y, size.z});
   if (!std::isfinite(largest))
