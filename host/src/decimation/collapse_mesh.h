@@ -1,12 +1,10 @@
 // Triangle connectivity that is edited in place, half-edge by half-edge.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <vkmesh/handles.h>
@@ -29,13 +27,13 @@ namespace vkmesh::detail {
 /// its fan begins.
 struct alignas(64) CollapseVertex {
   std::array<float, 3> position;
-  std::array<float, 6> a;  // xx, xy, xz, yy, yz, zz
-  std::array<float, 3> b;
-  float c;
+  std::uint32_t source;  // its number in the input, and flags
   float weight;
+  std::array<float, 6> a;  // xx, xy, xz, yy, yz, zz
+  float c;
+  std::array<float, 3> b;
   /// A half-edge that leaves it; kGone | the vertex that absorbed it; kInvalid when it is isolated.
   std::uint32_t leading;
-  std::uint32_t source;  // its number in the input, and flags
 
   static constexpr std::uint32_t kGone = 0x80000000u;
   static constexpr std::uint32_t kLocked = 1u << 28;
@@ -70,35 +68,12 @@ class CollapseMesh {
   static constexpr std::size_t kMaxFaces = std::size_t{1} << 29;
   static constexpr std::size_t kMaxVertices = std::size_t{1} << 28;
 
-  /// Fills the faces and makes room for the vertices, and sets `leading` to a half-edge that leaves each
+  /// Fills the faces, and sets `leading` to a half-edge that leaves each
   /// vertex, kInvalid where there is none; corners must be < vertex_count. False when the faces form no
-  /// oriented manifold of simple triangles; the mesh is then of no use. O(n).
+  /// oriented manifold of simple triangles; the mesh is then of no use. O(n), and O(d log d) for each vertex
+  /// of many faces d. The vertices have room, and no values yet.
   [[nodiscard]] bool build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
-                           std::vector<std::uint32_t>& leading) {
-    face_count_ = corners.size() / 3;
-    apex_ = static_cast<std::uint32_t>(vertex_count);
-    faces_ = LargeArray<Face>(face_count_ + face_count_ / 16 + 64);
-    vertices = LargeArray<CollapseVertex>(vertex_count + 1);
-    // The half-edges whose twins have not come yet, of each edge at its smaller vertex, linked by `twin`.
-    std::vector<std::uint32_t> waiting(vertex_count, kInvalid);
-    for (std::uint32_t f = 0; f < face_count_; ++f) {
-      Face& face = faces_[f];
-      face.origin = {corners[3 * f], corners[3 * f + 1], corners[3 * f + 2]};
-      face.tags = 0;
-      face.source = f;
-      if (face.origin[0] == face.origin[1] || face.origin[1] == face.origin[2] ||
-          face.origin[2] == face.origin[0])
-        return false;
-      for (std::uint32_t i = 0; i < 3; ++i)
-        if (!pair(4 * f + i, waiting)) return false;
-    }
-    if (!close(waiting)) return false;
-    leading = std::move(waiting);
-    std::fill(leading.begin(), leading.end(), kInvalid);
-    for (std::uint32_t f = 0; f < face_count_; ++f)
-      for (std::uint32_t i = 0; i < 3; ++i) leading[faces_[f].origin[i]] = 4 * f + i;
-    return fans_are_single(leading);
-  }
+                           std::vector<std::uint32_t>& leading);
 
   [[nodiscard]] std::uint32_t apex() const { return apex_; }
   [[nodiscard]] std::size_t face_count() const { return face_count_; }
@@ -165,71 +140,8 @@ class CollapseMesh {
     faces_[b >> 2].twin[b & 3u] = a;
   }
 
-  bool pair(std::uint32_t h, std::vector<std::uint32_t>& waiting) {
-    const std::uint32_t from = origin(h), to = target(h);
-    std::uint32_t* link = &waiting[std::min(from, to)];
-    while (*link != kInvalid) {
-      const std::uint32_t g = *link;
-      const std::uint32_t its_from = origin(g), its_to = target(g);
-      std::uint32_t& its_link = faces_[g >> 2].twin[g & 3u];
-      if (its_from == to && its_to == from) {
-        *link = its_link;
-        set_twins(g, h);
-        return true;
-      }
-      if (its_from == from && its_to == to) return false;
-      link = &its_link;
-    }
-    faces_[h >> 2].twin[h & 3u] = kInvalid;
-    *link = h;
-    return true;
-  }
-
-  // Puts a ghost, the triangle (target, origin, apex), beyond each boundary edge.
-  bool close(std::vector<std::uint32_t>& waiting) {
-    std::vector<std::uint32_t> boundary;
-    for (std::uint32_t& first : waiting) {
-      for (std::uint32_t h = first; h != kInvalid; h = twin(h)) boundary.push_back(h);
-      first = kInvalid;
-    }
-    const std::size_t all = face_count_ + boundary.size();
-    if (all > kMaxFaces) return false;
-    if (all > faces_.size()) faces_.grow(all, face_count_);
-    auto ghost = static_cast<std::uint32_t>(face_count_);
-    std::vector<std::uint32_t>& ghost_from = waiting;  // by the vertex that its boundary edge leaves
-    for (const std::uint32_t h : boundary) {
-      const std::uint32_t from = origin(h), to = target(h);
-      if (ghost_from[from] != kInvalid) return false;
-      ghost_from[from] = ghost;
-      faces_[ghost].origin = {to, from, apex_};
-      faces_[ghost].tags = 0;
-      faces_[ghost].source = kInvalid;
-      set_twins(h, 4 * ghost);
-      ++ghost;
-    }
-    // The ghost of v → w arrives from the apex where that of the next edge w → x leaves for it.
-    for (auto g = static_cast<std::uint32_t>(face_count_); g < ghost; ++g) {
-      const std::uint32_t after = ghost_from[faces_[g].origin[0]];
-      if (after == kInvalid) return false;
-      set_twins(4 * g + 2, 4 * after + 1);
-    }
-    ghosts_ = boundary.size();
-    return true;
-  }
-
-  // A vertex of several fans has half-edges that a walk around it does not meet.
-  [[nodiscard]] bool fans_are_single(const std::vector<std::uint32_t>& leading) const {
-    std::size_t met = 0;
-    for (const std::uint32_t start : leading) {
-      if (start == kInvalid) continue;
-      std::uint32_t h = start;
-      do {
-        ++met;
-        h = around_vertex(h);
-      } while (h != start);
-    }
-    return met == 3 * face_count_ + 2 * ghosts_;
-  }
+  class Fan;
+  bool close(std::span<const std::uint32_t> boundary);
 
   LargeArray<Face> faces_;
   std::size_t face_count_ = 0;

@@ -9,8 +9,6 @@
 #include <span>
 #include <vector>
 
-#include <vkmesh/handles.h>
-
 namespace vkmesh {
 
 /// Ids under non-negative floats, served in ascending order to 1/16 octave (6 %): one bucket for each value
@@ -21,9 +19,9 @@ namespace vkmesh {
 /// order depends on nothing but the calls. O(1) each. Memory: about 4 bytes an entry.
 class MonotoneQueue {
  public:
-  MonotoneQueue() { heads_.fill(kInvalid); }
+  MonotoneQueue() = default;
   /// Room for this many entries is made at once.
-  explicit MonotoneQueue(std::size_t capacity) : MonotoneQueue() { chunks_.reserve(capacity / kIds + 64); }
+  explicit MonotoneQueue(std::size_t capacity) { words_.reserve((capacity / (kChunk - 1) + 64) * kChunk); }
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -49,18 +47,18 @@ class MonotoneQueue {
     floor_ = word * 64 + static_cast<std::uint32_t>(std::countr_zero(bits));
 
     std::size_t count = 0;
-    while (count < out.size() && heads_[floor_] != kInvalid) {
-      Chunk& chunk = chunks_[heads_[floor_]];
-      const std::size_t some = std::min<std::size_t>(chunk.count, out.size() - count);
-      for (std::size_t i = 0; i < some; ++i) out[count++] = chunk.ids[--chunk.count];
-      if (chunk.count == 0) {
-        const std::uint32_t emptied = heads_[floor_];
-        heads_[floor_] = chunk.next;
-        chunk.next = free_;
-        free_ = emptied;
-      }
+    std::uint32_t end = ends_[floor_];
+    while (count < out.size() && end != 0) {
+      const std::uint32_t chunk = (end - 1) / kChunk * kChunk;
+      const std::size_t some = std::min<std::size_t>(end - chunk - 1, out.size() - count);
+      for (std::size_t i = 0; i < some; ++i) out[count++] = words_[--end];
+      if (end != chunk + 1) continue;
+      end = words_[chunk];
+      words_[chunk] = free_;
+      free_ = chunk;
     }
-    if (heads_[floor_] == kInvalid) occupied_[floor_ / 64] &= ~(std::uint64_t{1} << floor_ % 64);
+    ends_[floor_] = end;
+    if (end == 0) occupied_[floor_ / 64] &= ~(std::uint64_t{1} << floor_ % 64);
     size_ -= count;
     return count;
   }
@@ -68,36 +66,34 @@ class MonotoneQueue {
  private:
   static constexpr unsigned kShift = 19;
   static constexpr std::size_t kBuckets = std::size_t{1} << (31 - kShift);
-  static constexpr std::size_t kIds = 62;
-  struct Chunk {
-    std::uint32_t next, count;
-    std::array<std::uint32_t, kIds> ids;
-  };
+  /// Words of a chunk, of which the first tells where the ids of the bucket's chunk before it end.
+  static constexpr std::uint32_t kChunk = 64;
 
   void insert_in(std::uint32_t b, std::uint32_t id) {
-    std::uint32_t head = heads_[b];
-    if (head == kInvalid || chunks_[head].count == kIds) {
-      std::uint32_t fresh = free_;
-      if (fresh == kInvalid) {
-        fresh = static_cast<std::uint32_t>(chunks_.size());
-        chunks_.emplace_back();
-      } else {
-        free_ = chunks_[fresh].next;
-      }
-      chunks_[fresh].next = head;
-      chunks_[fresh].count = 0;
-      heads_[b] = head = fresh;
-      occupied_[b / 64] |= std::uint64_t{1} << b % 64;
-    }
-    Chunk& chunk = chunks_[head];
-    chunk.ids[chunk.count++] = id;
+    std::uint32_t end = ends_[b];
+    if (end % kChunk == 0) end = add_chunk(b);
+    words_[end] = id;
+    ends_[b] = end + 1;
     ++size_;
   }
 
-  std::vector<Chunk> chunks_;
-  std::array<std::uint32_t, kBuckets> heads_;
+  std::uint32_t add_chunk(std::uint32_t b) {
+    std::uint32_t chunk = free_;
+    if (chunk == 0) {
+      chunk = static_cast<std::uint32_t>(words_.size());
+      words_.resize(words_.size() + kChunk);
+    } else {
+      free_ = words_[chunk];
+    }
+    words_[chunk] = ends_[b];
+    occupied_[b / 64] |= std::uint64_t{1} << b % 64;
+    return chunk + 1;
+  }
+
+  std::vector<std::uint32_t> words_ = std::vector<std::uint32_t>(kChunk);  // the first chunk is none
+  std::array<std::uint32_t, kBuckets> ends_{};  // of the last chunk's ids; 0 when the bucket is empty
   std::array<std::uint64_t, kBuckets / 64> occupied_{};
-  std::uint32_t free_ = kInvalid;
+  std::uint32_t free_ = 0;  // a chunk; each leads to the next
   std::uint32_t floor_ = 0;
   std::size_t size_ = 0;
 };

@@ -1,0 +1,16 @@
+// Which edge goes next.
+#pragma once
+
+#include <vkmesh/decimation/decimate.h>
+
+namespace vkmesh::detail {
+
+enum class CollapseOrder {
+  kFast,  ///< What `decimate` does.
+  kExact  ///< The cheapest edge at any time, from a heap: many times slower, to compare with.
+};
+
+[[nodiscard]] Result<Decimated> decimate(const TriangleSurface& surface, const DecimateOptions& options,
+                                         CollapseOrder order, const Progress& progress = {});
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,56 @@
+// Queues of edges: each holds half-edges, one of the two of an edge, under lower bounds of the edge's cost.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <vkmesh/decimation/addressable_heap.h>
+#include <vkmesh/decimation/monotone_queue.h>
+
+#include "decimation/edge_batch.h"
+
+namespace vkmesh::detail {
+
+/// For costs that only rise.
+class LazyQueue {
+ public:
+  static constexpr std::size_t kBatch = EdgeBatch::kSize;
+  LazyQueue(std::size_t, std::size_t edges) : queue_(edges) {}
+  void fill(std::uint32_t id, float cost) { queue_.insert(id, cost); }
+  void start() {}
+  void insert(std::uint32_t id, float cost) { queue_.insert(id, cost); }
+  void insert_now(std::uint32_t id) { queue_.insert_now(id); }
+  void erase(std::uint32_t) {}
+  [[nodiscard]] bool is_due(std::uint32_t, float cost) const { return queue_.is_due(cost); }
+  std::size_t take(std::span<std::uint32_t> out) { return queue_.take(out); }
+
+ private:
+  MonotoneQueue queue_;
+};
+
+/// For costs that may fall, and the exact order.
+class ExactQueue {
+ public:
+  static constexpr std::size_t kBatch = 1;
+  ExactQueue(std::size_t half_edges, std::size_t) : heap_(half_edges) {}
+  void fill(std::uint32_t id, float cost) { heap_.append(id, cost); }
+  void start() { heap_.heapify(); }
+  void insert(std::uint32_t id, float cost) { heap_.set(id, cost); }
+  void insert_now(std::uint32_t id) { heap_.set(id, -1.0f); }
+  void erase(std::uint32_t id) { heap_.remove(id); }
+  [[nodiscard]] bool is_due(std::uint32_t id, float cost) const {
+    return heap_.empty() || cost < heap_.top_priority() || (cost == heap_.top_priority() && id < heap_.top());
+  }
+  std::size_t take(std::span<std::uint32_t> out) {
+    if (heap_.empty()) return 0;
+    out[0] = heap_.top();
+    heap_.pop();
+    return 1;
+  }
+
+ private:
+  AddressableHeap<> heap_;
+};
+
+}  // namespace vkmesh::detail

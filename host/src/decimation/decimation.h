@@ -1,0 +1,486 @@
+// The run of a decimation: edges from a queue, judged and collapsed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <vkmesh/decimation/decimate.h>
+#include <vkmesh/handles.h>
+
+#include "decimation/collapse_mesh.h"
+#include "decimation/edge_batch.h"
+#include "decimation/face_turns.h"
+
+namespace vkmesh::detail {
+
+// Removals by quadric error: where the point goes, and what is known of the cost.
+
+/// Which edges of the kept vertex may cost less after a collapse.
+enum class MayFall { kNone, kOfGone, kAll };
+
+struct OptimalCollapse {
+  static constexpr MayFall kMayFall = MayFall::kNone;
+  static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
+};
+struct MidpointCollapse {
+  static constexpr MayFall kMayFall = MayFall::kAll;
+  static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
+};
+/// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those
+/// that q had before only cost more.
+struct EndCollapse {
+  static constexpr MayFall kMayFall = MayFall::kOfGone;
+  static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
+};
+
+constexpr std::size_t kBatchesBetweenReports = 64;
+
+enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked };
+
+struct Limits {
+  std::size_t faces = 0, vertices = 0;
+  double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
+  double seconds = std::numeric_limits<double>::infinity();
+  float cos_deviation = 0;
+};
+
+struct Event {
+  std::uint32_t kept, removed;
+  std::array<float, 3> position;
+  bool moved;  // from where the input has it
+  std::array<std::uint32_t, 2> faces;
+};
+
+struct Outcome {
+  DecimateStop stop = DecimateStop::kTargetReached;
+  double error2 = 0;
+  std::size_t collapses = 0;
+  std::array<std::size_t, 5> rejected{};  // by Legality
+  std::vector<Event> events;
+};
+
+/// One run: takes the cheapest edge, collapses it if that is legal, until a limit is met.
+///
+/// Each edge stands in the queue at most once in earnest, by the half-edge that is tagged as queued; what the
+/// queue serves without the tag is stale. An edge whose collapse was found illegal is parked, and comes back
+/// when a vertex next to it has changed: nothing else can make it legal.
+template <class Removal, class Queue>
+class Decimation {
+ public:
+  Decimation(CollapseMesh& mesh, const Limits& limits, std::size_t faces, std::size_t vertices,
+             bool keep_events)
+      : mesh_(mesh),
+        vertices_(mesh.vertices),
+        limits_(limits),
+        keep_events_(keep_events),
+        queue_(mesh.half_edge_bound(), 3 * mesh.face_count() / 2 + 1),
+        faces_(faces),
+        left_(vertices) {}
+
+  Result<Outcome> run(const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    if (!reached()) fill();
+    const std::size_t first_faces = faces_, first_vertices = left_;
+    std::array<std::uint32_t, Queue::kBatch> taken{};
+    std::size_t batches = 0;
+    bool exhausted = false;
+    while (!reached()) {
+      if (batches++ % (kBatchesBetweenReports * EdgeBatch::kSize / Queue::kBatch) == 0) {
+        if (progress) {
+          const auto share = [](std::size_t first, std::size_t now, std::size_t last) {
+            return first <= last ? 1.0 : static_cast<double>(first - now) / static_cast<double>(first - last);
+          };
+          const double done = std::max(share(first_faces, faces_, limits_.faces),
+                                       share(first_vertices, left_, limits_.vertices));
+          if (!progress(std::min(done, 1.0)))
+            return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+        }
+        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >=
+            limits_.seconds) {
+          outcome_.stop = DecimateStop::kTimeLimit;
+          break;
+        }
+      }
+      const std::size_t count = queue_.take(taken);
+      if (count == 0) {
+        exhausted = true;
+        break;
+      }
+      serve(std::span(taken).first(count));
+    }
+    if (exhausted)
+      outcome_.stop = held_by_error() ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
+    if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+    return std::move(outcome_);
+  }
+
+ private:
+  [[nodiscard]] bool reached() const { return faces_ <= limits_.faces || left_ <= limits_.vertices; }
+
+  // The edges of these half-edges, into the batch.
+  void evaluate(std::span<const std::uint32_t> edges) {
+    batch_.gather(edges.size(), [&](std::size_t i) {
+      const std::uint32_t h = edges[i];
+      return std::pair(&vertices_[mesh_.origin(h)], &vertices_[mesh_.target(h)]);
+    });
+    Removal::place(batch_, edges.size());
+  }
+
+  // All edges with their costs.
+  void fill() {
+    constexpr std::uint32_t kAhead = 64;
+    std::array<std::uint32_t, EdgeBatch::kSize + 1> ids{};
+    std::size_t count = 0;
+    const auto flush = [&] {
+      evaluate(std::span(ids).first(count));
+      for (std::size_t i = 0; i < count; ++i) queue_.fill(ids[i], batch_.cost[i]);
+      count = 0;
+    };
+    const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
+    for (std::uint32_t f = 0; f <= last; ++f) {
+      for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin) prefetch(&vertices_[v]);
+      for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
+        const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
+        mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);
+        ids[count] = h;
+        count += first ? 1 : 0;
+        if (count == EdgeBatch::kSize) flush();
+      }
+    }
+    flush();
+    queue_.start();
+  }
+
+  // What follows happens to all edges of the batch before the next thing does: what one waits for from
+  // memory comes while the others are looked at. Conditions that cannot be foretold count, and do not jump.
+  void serve(std::span<const std::uint32_t> taken) {
+    for (const std::uint32_t h : taken) prefetch(&mesh_.face(h));
+    std::array<std::uint32_t, Queue::kBatch> ids;
+    std::size_t count = 0;
+    for (const std::uint32_t h : taken) {
+      ids[count] = h;
+      count += mesh_.alive(h) && mesh_.queued(h) ? 1 : 0;
+    }
+    for (const std::uint32_t h : std::span(ids).first(count)) {
+      prefetch(&vertices_[mesh_.origin(h)]);
+      prefetch(&vertices_[mesh_.target(h)]);
+    }
+    evaluate(std::span(ids).first(count));
+    std::size_t due = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (queue_.is_due(ids[i], batch_.cost[i])) {
+        due_[due++] = {
+            ids[i], batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
+      } else {
+        queue_.insert(ids[i], batch_.cost[i]);
+      }
+    }
+    walk_rings(due);
+    for (std::size_t i = 0; i < due && !reached(); ++i) attempt(i);
+    for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
+    touched_.clear();
+  }
+
+  struct Due {
+    std::uint32_t half_edge;
+    float cost;
+    std::int32_t end;
+    std::array<float, 3> x;
+  };
+
+  /// The neighbours of a vertex but one, counter-clockwise.
+  using Ring = std::span<const std::uint32_t>;
+  struct Rings {
+    Ring p, q;
+  };
+
+  static constexpr std::uint32_t kWalked = 16, kTooLong = ~0u;
+  struct Walked {
+    std::array<std::uint32_t, kWalked> vertex;  // the first `size` are meant
+    std::uint32_t size;                         // kTooLong when there are more
+  };
+
+  // Walks around the ends of all due edges, one step of each in turn: one waits for all.
+  void walk_rings(std::size_t due) {
+    std::array<std::uint32_t, 2 * Queue::kBatch> at, start, walk;
+    const std::size_t walks = 2 * due;
+    for (std::size_t i = 0; i < due; ++i) {
+      const std::uint32_t h = due_[i].half_edge, t = mesh_.twin(h);
+      prefetch(&mesh_.face(t));
+      at[2 * i] = start[2 * i] = h;
+      at[2 * i + 1] = start[2 * i + 1] = t;
+    }
+    for (std::uint32_t i = 0; i < walks; ++i) walk[i] = i;
+    std::size_t left = walks;
+    for (std::uint32_t step = 0; step < kWalked && left > 0; ++step) {
+      const std::size_t now = left;
+      left = 0;
+      for (std::size_t i = 0; i < now; ++i) {
+        const std::uint32_t w = walk[i], before = CollapseMesh::previous(at[i]), out = mesh_.twin(before),
+                            v = mesh_.origin(before);
+        prefetch(&vertices_[v]);
+        prefetch(&mesh_.face(out));
+        walked_[w].vertex[step] = v;
+        walked_[w].size = step;
+        at[left] = out;
+        walk[left] = w;
+        left += out != start[w] ? 1 : 0;
+      }
+    }
+    for (std::size_t i = 0; i < left; ++i) walked_[walk[i]].size = kTooLong;
+  }
+
+  // Of the origin of h, from beyond its target.
+  Ring collect_ring(std::uint32_t h, std::vector<std::uint32_t>& ring) const {
+    ring.clear();
+    for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out))
+      ring.push_back(mesh_.target(out));
+    return ring;
+  }
+
+  void attempt(std::size_t i) {
+    const Due& due = due_[i];
+    const std::uint32_t h = due.half_edge;
+    if (!mesh_.alive(h) || !mesh_.queued(h)) return;
+    const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
+    if (vertices_[p].has(CollapseVertex::kTouched) || vertices_[q].has(CollapseVertex::kTouched)) {
+      queue_.insert_now(h);
+      return;
+    }
+    Rings rings;
+    const Legality legality = judge(i, p, q, rings);
+    if (legality == Legality::kLegal) {
+      collapse(due, p, q, rings);
+    } else {
+      ++outcome_.rejected[static_cast<std::size_t>(legality)];
+      mesh_.clear_queued(h);
+      mesh_.set_parked(h);
+      vertices_[p].source |= CollapseVertex::kHasParked;
+      vertices_[q].source |= CollapseVertex::kHasParked;
+    }
+  }
+
+  /// Sets `rings` when it comes to that.
+  [[nodiscard]] Legality judge(std::size_t i, std::uint32_t p, std::uint32_t q, Rings& rings) {
+    const Due& due = due_[i];
+    if (due.end == 3) return Legality::kLocked;
+    const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
+    if (static_cast<double>(due.cost) > limits_.error2 * weight) return Legality::kError;
+    rings = rings_of(i);
+    if (!link_condition(rings, q)) return Legality::kLink;
+    return turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, limits_.cos_deviation)
+               ? Legality::kFoldOver
+               : Legality::kLegal;
+  }
+
+  /// The rings that were walked, unless a collapse of this batch was near; their vertices are the corners of
+  /// `turns_`, and their flags `ring_flags_`.
+  Rings rings_of(std::size_t i) {
+    const Walked &at_p = walked_[2 * i], &at_q = walked_[2 * i + 1];
+    if (at_p.size != kTooLong && at_q.size != kTooLong) {
+      const Rings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size)};
+      ring_flags_ = turns_.set(vertices_, rings.p, rings.q);
+      if ((ring_flags_ & CollapseVertex::kTouched) == 0) return rings;
+    }
+    const std::uint32_t h = due_[i].half_edge;
+    const Rings rings{collect_ring(h, ring_p_), collect_ring(mesh_.twin(h), ring_q_)};
+    ring_flags_ = turns_.set(vertices_, rings.p, rings.q);
+    return rings;
+  }
+
+  /// p and q share two neighbours, those across the edge's faces, and the four are no tetrahedron. Each ring
+  /// starts with one of the two and ends with the other.
+  [[nodiscard]] bool link_condition(const Rings& rings, std::uint32_t q) {
+    if (rings.p.front() == rings.p.back()) return false;
+    if (rings.p.size() == 2 && rings.q.size() == 2) return false;
+    const Ring inner_p = rings.p.subspan(1, rings.p.size() - 2),
+               inner_q = rings.q.subspan(1, rings.q.size() - 2);
+    std::uint64_t seen = 0;  // a set of hashes: most rings need no second look
+    const auto bit = [](std::uint32_t v) { return std::uint64_t{1} << (v * 0x9e3779b1u >> 26); };
+    for (const std::uint32_t v : inner_p) seen |= bit(v);
+    const auto in_p = [&](std::uint32_t v) {
+      return (seen & bit(v)) != 0 && std::find(inner_p.begin(), inner_p.end(), v) != inner_p.end();
+    };
+    if (in_p(q)) return false;  // two edges between p and q
+    if (inner_p.size() <= 64) return std::none_of(inner_q.begin(), inner_q.end(), in_p);
+    sorted_.assign(inner_p.begin(), inner_p.end());
+    std::sort(sorted_.begin(), sorted_.end());
+    return std::none_of(inner_q.begin(), inner_q.end(), [&](std::uint32_t v) {
+      return std::binary_search(sorted_.begin(), sorted_.end(), v);
+    });
+  }
+
+  void collapse(const Due& due, std::uint32_t p, std::uint32_t q, const Rings& rings) {
+    std::uint32_t h = due.half_edge;
+    CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
+    std::array<float, 3> place;
+    if (due.end == 0) {
+      for (std::size_t k = 0; k < 3; ++k) place[k] = vp.position[k] + due.x[k];
+    } else {
+      place = due.end == 1 ? vp.position : vq.position;
+    }
+    // Which of the two goes: what was chosen; else that of fewer neighbours, which is less work.
+    const bool keep_p =
+        due.end == 0 ? rings.p.size() > rings.q.size() ||
+                           (rings.p.size() == rings.q.size() && (vp.source & CollapseVertex::kSourceMask) <
+                                                                    (vq.source & CollapseVertex::kSourceMask))
+                     : due.end == 1;
+    if (keep_p) h = mesh_.twin(h);
+    CollapseVertex &kept = keep_p ? vp : vq, &gone = keep_p ? vq : vp;
+    const std::uint32_t q_now = keep_p ? p : q;
+
+    std::array<float, 3> dk, dg;
+    for (std::size_t k = 0; k < 3; ++k) {
+      dk[k] = place[k] - kept.position[k];
+      dg[k] = place[k] - gone.position[k];
+    }
+    shift(kept, dk);
+    shift(gone, dg);
+    for (std::size_t k = 0; k < 6; ++k) kept.a[k] += gone.a[k];
+    for (std::size_t k = 0; k < 3; ++k) kept.b[k] += gone.b[k];
+    kept.c += gone.c;
+    kept.weight += gone.weight;
+    if (place != kept.position) kept.source |= CollapseVertex::kMoved;
+    kept.position = place;
+    kept.source |= CollapseVertex::kTouched | (gone.source & CollapseVertex::kHasParked);
+    gone.source |= CollapseVertex::kTouched;
+    touched_.push_back(q_now);
+
+    const std::uint32_t t = mesh_.twin(h);
+    const CollapseMesh::Face &one = mesh_.face(h), &other = mesh_.face(t);
+    if (keep_events_)
+      outcome_.events.push_back({kept.source & CollapseVertex::kSourceMask,
+                                 gone.source & CollapseVertex::kSourceMask,
+                                 place,
+                                 kept.has(CollapseVertex::kMoved),
+                                 {one.source, other.source}});
+    erase_queued(h);
+    erase_queued(t);
+    const std::uint32_t to_a = mesh_.twin(CollapseMesh::previous(h)),
+                        from_a = mesh_.twin(CollapseMesh::next(h));
+    const std::uint32_t to_b = mesh_.twin(CollapseMesh::previous(t)),
+                        from_b = mesh_.twin(CollapseMesh::next(t));
+    faces_ -= mesh_.collapse(h);
+    --left_;
+    ++outcome_.collapses;
+    if (kept.weight > 0)
+      outcome_.error2 =
+          std::max(outcome_.error2, static_cast<double>(due.cost) / static_cast<double>(kept.weight));
+    join(to_a, from_a);
+    join(to_b, from_b);
+    if constexpr (Removal::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
+    if constexpr (Removal::kMayFall == MayFall::kOfGone)
+      refresh(q_now, keep_p ? rings.q.size() : rings.p.size());
+    revive(q_now, rings);
+  }
+
+  // Moves the point about which the vertex' quadric is expressed.
+  static void shift(CollapseVertex& v, const std::array<float, 3>& d) {
+    const auto& a = v.a;
+    const std::array<float, 3> ad = {a[0] * d[0] + a[1] * d[1] + a[2] * d[2],
+                                     a[1] * d[0] + a[3] * d[1] + a[4] * d[2],
+                                     a[2] * d[0] + a[4] * d[1] + a[5] * d[2]};
+    const float c =
+        v.c + d[0] * (ad[0] + 2 * v.b[0]) + d[1] * (ad[1] + 2 * v.b[1]) + d[2] * (ad[2] + 2 * v.b[2]);
+    v.c = c > 0 ? c : 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) v.b[k] += ad[k];
+  }
+
+  // The half-edges of a face that goes.
+  void erase_queued(std::uint32_t h) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t g = (h & ~3u) + i;
+      if (mesh_.queued(g)) queue_.erase(g);
+    }
+  }
+
+  // Two edges have become one, of the half-edges g and t: one entry is to stand for it.
+  void join(std::uint32_t g, std::uint32_t t) {
+    if (mesh_.origin(g) == mesh_.apex() || mesh_.origin(t) == mesh_.apex()) return;
+    mesh_.clear_parked(g);
+    if (mesh_.queued(g)) {
+      if (!mesh_.queued(t)) return;
+      mesh_.clear_queued(t);
+      queue_.erase(t);
+    } else if (!mesh_.queued(t)) {
+      mesh_.set_queued(g);
+      queue_.insert_now(g);
+    }
+  }
+
+  // The first `edges` edges at v cost something else now. A vertex that has absorbed another has the edges of
+  // that one first.
+  void refresh(std::uint32_t v, std::size_t edges) {
+    std::uint32_t h = vertices_[v].leading;
+    while (edges > 0) {
+      std::array<std::uint32_t, EdgeBatch::kSize> ids;
+      std::size_t count = 0;
+      for (; edges > 0 && count < ids.size(); --edges) {
+        const std::uint32_t t = mesh_.twin(h);
+        if (mesh_.queued(h) || mesh_.queued(t)) ids[count++] = mesh_.queued(h) ? h : t;
+        h = mesh_.around_vertex(h);
+      }
+      evaluate(std::span(ids).first(count));
+      for (std::size_t i = 0; i < count; ++i) queue_.insert(ids[i], batch_.cost[i]);
+    }
+  }
+
+  // Parked edges near v may have become legal.
+  void revive(std::uint32_t v, const Rings& rings) {
+    if ((ring_flags_ & CollapseVertex::kHasParked) != 0)
+      for (const Ring& ring : {rings.p, rings.q})
+        for (const std::uint32_t r : ring)
+          if (vertices_[r].has(CollapseVertex::kHasParked)) revive_at(r);
+    if (vertices_[v].has(CollapseVertex::kHasParked)) revive_at(v);
+  }
+  void revive_at(std::uint32_t v) {
+    vertices_[v].source &= ~CollapseVertex::kHasParked;
+    const std::uint32_t start = vertices_[v].leading;
+    std::uint32_t h = start;
+    do {
+      if (mesh_.parked(h)) {
+        mesh_.clear_parked(h);
+        mesh_.set_queued(h);
+        queue_.insert_now(h);
+      }
+      h = mesh_.around_vertex(h);
+    } while (h != start);
+  }
+
+  [[nodiscard]] bool held_by_error() {
+    if (outcome_.rejected[static_cast<std::size_t>(Legality::kError)] == 0) return false;
+    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
+      for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
+        if (!mesh_.alive(h) || !mesh_.parked(h)) continue;
+        const CollapseVertex &p = vertices_[mesh_.origin(h)], &q = vertices_[mesh_.target(h)];
+        evaluate(std::span(&h, 1));
+        if (static_cast<double>(batch_.cost[0]) >
+            limits_.error2 * (static_cast<double>(p.weight) + static_cast<double>(q.weight)))
+          return true;
+      }
+    return false;
+  }
+
+  CollapseMesh& mesh_;
+  LargeArray<CollapseVertex>& vertices_;
+  const Limits& limits_;
+  bool keep_events_;
+  Queue queue_;
+  EdgeBatch batch_;
+  std::size_t faces_, left_;
+  std::array<Due, Queue::kBatch> due_;
+  std::array<Walked, 2 * Queue::kBatch> walked_;  // those of p and q of each due edge
+  std::vector<std::uint32_t> touched_, sorted_, ring_p_, ring_q_;
+  FaceTurns turns_;
+  std::uint32_t ring_flags_ = 0;
+  Outcome outcome_;
+};
+
+}  // namespace vkmesh::detail

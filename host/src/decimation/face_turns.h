@@ -1,0 +1,43 @@
+// Whether a collapse would fold faces over.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "decimation/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+/// The faces around the ends p and q of an edge that remain when it collapses, and how they turn.
+///
+/// The corners go once around both ends, so that each consecutive two span a face and neighbours among the
+/// faces follow each other. Two corners at the same place, or one at no place, span nothing.
+class FaceTurns {
+ public:
+  /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the
+  /// other ends. Returns the flags of all these vertices.
+  std::uint32_t set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
+                    std::span<const std::uint32_t> around_q);
+
+  /// Whether some face turns too far or loses its area, one that had none stands against the others, or two
+  /// neighbours come to stand against each other, when p, which lies at `p`, and q at `q` move to p + x. Both
+  /// rings need at least two vertices, and must not be the same face.
+  bool folds_over(const std::array<float, 3>& p, const std::array<float, 3>& q, const std::array<float, 3>& x,
+                  float cos_deviation) const;
+
+ private:
+  using Vector = std::array<float, 3>;
+
+  [[nodiscard]] Vector area(std::size_t face, const Vector& p, const Vector& x) const;
+  [[nodiscard]] bool disagrees(const Vector& p, const Vector& d, const Vector& x) const;
+  [[nodiscard]] bool more_against(const Vector& p, const Vector& d, const Vector& x) const;
+
+  using Lanes = std::vector<float>;
+  Lanes x_, y_, z_;  // the corners: those around p, then those around q, and the first two again
+  std::size_t at_p_ = 0, faces_ = 0;  // faces at p, which come first, and all
+};
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,62 @@
+// The coordinates that decimation works in.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include <vkmesh/result.h>
+#include <vkmesh/vec.h>
+
+namespace vkmesh::detail {
+
+/// Where the mesh was: local = (input - centre) · scale, the scale a power of two.
+struct Frame {
+  DVec3 centre{0.0};
+  double scale = 1;
+  double diagonal = 0;  // of the bounding box, in units of the input
+};
+
+/// Of the points that are used.
+template <class Point>
+Result<Frame> frame_of(std::span<const Point> points, std::span<const std::uint8_t> used) {
+  DVec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (used[v] == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const double x = points[v][k];
+      low[k] = std::min(low[k], x);
+      high[k] = std::max(high[k], x);
+    }
+  }
+  Frame frame;
+  if (low.x > high.x) return frame;  // nothing is used
+  const DVec3 size = high - low;
+  const double largest = std::max({size.x, size.y, size.z});
+  if (!std::isfinite(largest))
+    return fail(ErrorCode::kUnsuitable, "decimation needs a mesh of finite extent");
+  for (int k = 0; k < 3; ++k) frame.centre[k] = low[k] + 0.5 * size[k];
+  if (largest > 0) {
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    exponent = std::clamp(exponent, -1000, 1000);
+    frame.scale = std::ldexp(1.0, -exponent);
+    const DVec3 s = size * frame.scale;
+    frame.diagonal = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z) / frame.scale;
+  }
+  return frame;
+}
+
+template <class Point>
+Point point_of(const std::array<float, 3>& local, const Frame& frame) {
+  Point point;
+  for (int k = 0; k < 3; ++k)
+    point[k] = static_cast<typename Point::value_type>(
+        frame.centre[k] + static_cast<double>(local[static_cast<std::size_t>(k)]) / frame.scale);
+  return point;
+}
+
+}  // namespace vkmesh::detail

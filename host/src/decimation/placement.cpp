@@ -1,0 +1,137 @@
+// Where edges collapse to, and what that costs: one edge a lane of vector registers.
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "decimation/edge_batch.h"
+#include "passes/clones.h"
+
+namespace vkmesh::detail {
+namespace {
+
+// A lane of a batch: both quadrics, and the edge.
+struct Lane {
+  std::array<float, 6> pa, qa;
+  std::array<float, 3> pb, qb, d;
+  float pc, qc;
+  std::int32_t end;
+};
+
+[[gnu::always_inline]] inline Lane lane_of(const EdgeBatch& batch, std::size_t i) {
+  const auto& p = batch.p;
+  const auto& q = batch.q;
+  const auto locked = [](float source) {
+    return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(source) >> 28 & 1u);
+  };
+  return {{p[5][i], p[6][i], p[7][i], p[8][i], p[9][i], p[10][i]},
+          {q[5][i], q[6][i], q[7][i], q[8][i], q[9][i], q[10][i]},
+          {p[12][i], p[13][i], p[14][i]},
+          {q[12][i], q[13][i], q[14][i]},
+          {q[0][i] - p[0][i], q[1][i] - p[1][i], q[2][i] - p[2][i]},
+          p[11][i],
+          q[11][i],
+          locked(p[3][i]) + 2 * locked(q[3][i])};
+}
+
+// Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
+[[gnu::always_inline]] inline float value(const std::array<float, 6>& a, const std::array<float, 3>& b,
+                                          float c, float x, float y, float z) {
+  const float ax = a[0] * x + a[1] * y + a[2] * z;
+  const float ay = a[1] * x + a[3] * y + a[4] * z;
+  const float az = a[2] * x + a[4] * y + a[5] * z;
+  const float sum = c + x * (ax + 2 * b[0]) + y * (ay + 2 * b[1]) + z * (az + 2 * b[2]);
+  return sum > 0 ? sum : 0.0f;
+}
+
+[[gnu::always_inline]] inline float both(const Lane& lane, float x, float y, float z) {
+  return value(lane.pa, lane.pb, lane.pc, x, y, z) +
+         value(lane.qa, lane.qb, lane.qc, x - lane.d[0], y - lane.d[1], z - lane.d[2]);
+}
+
+}  // namespace
+
+VKMESH_CLONES void place_optimally(EdgeBatch& batch, std::size_t count) {
+  // Directions in which the quadric is flatter than this share of its steepest are left to the middle.
+  constexpr float kFlat = 1.0f / (1 << 20);
+  for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
+    for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
+      const Lane lane = lane_of(batch, i);
+      const auto &pa = lane.pa, &qa = lane.qa;
+      const auto &pb = lane.pb, &qb = lane.qb;
+      const float dx = lane.d[0], dy = lane.d[1], dz = lane.d[2];
+      const float mx = 0.5f * dx, my = 0.5f * dy, mz = 0.5f * dz;
+      const float xx = pa[0] + qa[0], xy = pa[1] + qa[1], xz = pa[2] + qa[2];
+      const float yy = pa[3] + qa[3], yz = pa[4] + qa[4], zz = pa[5] + qa[5];
+      // Half the gradient in the middle, m from p and -m from q.
+      const float gx = (pb[0] + qb[0]) + ((pa[0] - qa[0]) * mx + (pa[1] - qa[1]) * my + (pa[2] - qa[2]) * mz);
+      const float gy = (pb[1] + qb[1]) + ((pa[1] - qa[1]) * mx + (pa[3] - qa[3]) * my + (pa[4] - qa[4]) * mz);
+      const float gz = (pb[2] + qb[2]) + ((pa[2] - qa[2]) * mx + (pa[4] - qa[4]) * my + (pa[5] - qa[5]) * mz);
+      // L D Lᵀ of A + εI, whose pivots are at least ε but for rounding.
+      const float e = (xx + yy + zz) * kFlat + 1e-36f, least = 0.5f * e;
+      const float d0 = xx + e, r0 = 1.0f / d0;
+      const float l1 = xy * r0, l2 = xz * r0;
+      const float p1 = (yy + e) - l1 * xy, d1 = p1 > least ? p1 : least, r1 = 1.0f / d1;
+      const float u = yz - l2 * xy, l3 = u * r1;
+      const float p2 = (zz + e) - l2 * xz - l3 * u, d2 = p2 > least ? p2 : least, r2 = 1.0f / d2;
+      const auto solve = [&](float hx, float hy, float hz, float& tx, float& ty, float& tz) {
+        const float w0 = -hx, w1 = -hy - l1 * w0, w2 = -hz - l2 * w0 - l3 * w1;
+        tz = w2 * r2;
+        ty = w1 * r1 - l3 * tz;
+        tx = w0 * r0 - l1 * ty - l2 * tz;
+      };
+      float sx, sy, sz, tx, ty, tz;
+      solve(gx, gy, gz, sx, sy, sz);
+      // Once more for the rest, which takes back what ε has shortened of steep directions.
+      solve(gx + (xx * sx + xy * sy + xz * sz), gy + (xy * sx + yy * sy + yz * sz),
+            gz + (xz * sx + yz * sy + zz * sz), tx, ty, tz);
+      sx += tx;
+      sy += ty;
+      sz += tz;
+      // Farther from the middle than twice the edge no planes of its faces can lead in earnest.
+      const bool near = sx * sx + sy * sy + sz * sz <= 4 * (dx * dx + dy * dy + dz * dz);
+      sx = near ? sx : 0.0f;
+      sy = near ? sy : 0.0f;
+      sz = near ? sz : 0.0f;
+      const bool free = lane.end == 0, at_p = lane.end == 1;
+      const float x = free ? mx + sx : at_p ? 0.0f : dx;
+      const float y = free ? my + sy : at_p ? 0.0f : dy;
+      const float z = free ? mz + sz : at_p ? 0.0f : dz;
+      batch.x[0][i] = x;
+      batch.x[1][i] = y;
+      batch.x[2][i] = z;
+      batch.end[i] = lane.end;
+      batch.cost[i] = both(lane, x, y, z);
+    }
+}
+
+VKMESH_CLONES void place_in_middle(EdgeBatch& batch, std::size_t count) {
+  for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
+    for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
+      const Lane lane = lane_of(batch, i);
+      const float share = lane.end == 0 ? 0.5f : lane.end == 1 ? 0.0f : 1.0f;
+      const float x = share * lane.d[0], y = share * lane.d[1], z = share * lane.d[2];
+      batch.x[0][i] = x;
+      batch.x[1][i] = y;
+      batch.x[2][i] = z;
+      batch.end[i] = lane.end;
+      batch.cost[i] = both(lane, x, y, z);
+    }
+}
+
+VKMESH_CLONES void place_at_end(EdgeBatch& batch, std::size_t count) {
+  for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
+    for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
+      const Lane lane = lane_of(batch, i);
+      const float dx = lane.d[0], dy = lane.d[1], dz = lane.d[2];
+      const float at_p = both(lane, 0.0f, 0.0f, 0.0f), at_q = both(lane, dx, dy, dz);
+      const bool q = lane.end == 0 ? at_q <= at_p : lane.end != 1;
+      batch.x[0][i] = q ? dx : 0.0f;
+      batch.x[1][i] = q ? dy : 0.0f;
+      batch.x[2][i] = q ? dz : 0.0f;
+      batch.end[i] = lane.end == 3 ? 3 : q ? 2 : 1;
+      batch.cost[i] = q ? at_q : at_p;
+    }
+}
+
+}  // namespace vkmesh::detail
