@@ -22,7 +22,7 @@ struct SimplifyOptions {
   std::string boundary = "in-shape";
   std::optional<double> ratio;
   std::optional<std::size_t> faces, vertices;
-  std::optional<double> error, relative_error, time_limit;
+  std::optional<double> error, relative_error, time_limit, crease_angle;
   double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
 };
 
@@ -77,6 +77,7 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
   if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
   if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
+  if (options.crease_angle) decimation.crease_angle = *options.crease_angle * kRadians;
   decimation.target_faces = options.faces;
   decimation.target_vertices = options.vertices;
   decimation.target_ratio = options.ratio;
@@ -129,7 +130,8 @@ void add_simplify(CLI::App& app, Program& program) {
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz near.ply --relative-error 1e-4 --boundary kept\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz few.ply --vertices 5000 --operation "
-      "half-edge-collapse");
+      "half-edge-collapse\n"
+      "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<SimplifyOptions>();
@@ -151,6 +153,12 @@ void add_simplify(CLI::App& app, Program& program) {
                    "the error; free: it may shrink")
       ->type_name("NAME")
       ->check(CLI::IsMember({"kept", "in-shape", "free"}));
+  command
+      ->add_option("--crease-angle", options->crease_angle,
+                   "Edges bent by at least so many degrees are creases, whose shape counts in the error\n"
+                   "as that of the boundary does; default none")
+      ->type_name("DEG")
+      ->check(number_between(0.001, 180));
   CLI::Option* ratio =
       command->add_option("--ratio", options->ratio, "Stop at this share of the triangles, from 0 to 1")
           ->type_name("R")

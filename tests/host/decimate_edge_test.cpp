@@ -2,10 +2,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,8 +16,10 @@
 #include <catch2/catch.hpp>
 
 #include <vkmesh/consolidate.h>
+#include <vkmesh/creases.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/passes/dihedral_angles.h>
 #include <vkmesh/triangulate.h>
 
 #include "support/data.h"
@@ -383,6 +388,62 @@ TEST_CASE("decimation: every manifold mesh of the CGAL collection, each way and 
       }
   }
   CHECK(tried > test::cgal_meshes_for_long_work().size() / 3);
+}
+
+TEST_CASE("decimation: fandisk to 5 % keeps every sharp edge within 0.1 % of its diagonal", "[decimate]") {
+  const auto meshes = test::cgal_meshes();
+  const auto path =
+      std::find_if(meshes.begin(), meshes.end(), [](const auto& p) { return p.filename() == "fandisk.off"; });
+  REQUIRE(path != meshes.end());
+  const IndexedFaceSet mesh = to_indexed_face_set(read_mesh(*path).value()).value();
+  const auto segments_of = [](const HalfEdgeMesh& half_edges, std::span<const Vec3> points, double degrees) {
+    const DihedralAngles angles = dihedral_angles(half_edges, points).value();
+    const double bent = degrees * std::numbers::pi / 180;
+    std::vector<std::array<DVec3, 2>> segments;
+    const auto creases =
+        find_creases(half_edges, points, angles.half_edge, {.sharp_angle = bent, .soft_angle = bent}).value();
+    for (const Crease& crease : creases)
+      for (std::size_t i = 0; i < crease.half_edges.size(); ++i)
+        segments.push_back({DVec3(points[crease.vertices[i]]),
+                            DVec3(points[crease.vertices[(i + 1) % crease.vertices.size()]])});
+    return segments;
+  };
+  const auto distance = [](DVec3 p, const std::array<DVec3, 2>& segment) {
+    const DVec3 along = segment[1] - segment[0], to = p - segment[0];
+    const double squared = along.x * along.x + along.y * along.y + along.z * along.z;
+    const double t = std::clamp((to.x * along.x + to.y * along.y + to.z * along.z) / squared, 0.0, 1.0);
+    const DVec3 off = to - t * along;
+    return std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
+  };
+  const HalfEdgeMesh input = half_edges(mesh);
+  DecimateOptions options;
+  options.target_ratio = 0.05;
+  options.crease_angle = 40 * std::numbers::pi / 180;
+  const Decimated result = run(input, mesh.points, options);
+  REQUIRE(result.mesh.face_count() <= mesh.face_count() / 20);
+  // What is left of a sharp edge may be bent a little less.
+  const auto before = segments_of(input, mesh.points, 40),
+             after = segments_of(result.mesh, result.positions, 30);
+  REQUIRE(before.size() > 600);
+  REQUIRE_FALSE(after.empty());
+  Vec3 low = mesh.points[0], high = low;
+  for (const Vec3& p : mesh.points)
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  const DVec3 size = DVec3(high) - DVec3(low);
+  const double diagonal = std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z);
+  double farthest = 0;
+  for (const auto& segment : before)
+    for (int i = 0; i < 4; ++i) {
+      const DVec3 p = segment[0] + i / 4.0 * (segment[1] - segment[0]);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const auto& other : after) nearest = std::min(nearest, distance(p, other));
+      farthest = std::max(farthest, nearest);
+    }
+  INFO("farthest " << 100 * farthest / diagonal << " %");
+  CHECK(farthest < 0.001 * diagonal);
 }
 
 }  // namespace vkmesh

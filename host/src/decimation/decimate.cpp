@@ -55,6 +55,10 @@ Result<void> check(const DecimateOptions& options, std::size_t vertices) {
     return usage("max_normal_deviation must lie between 0 and pi");
   if (!(options.boundary_weight >= 0 && std::isfinite(options.boundary_weight)))
     return usage("boundary_weight must be at least 0 and finite");
+  if (!(options.crease_weight >= 0 && std::isfinite(options.crease_weight)))
+    return usage("crease_weight must be at least 0 and finite");
+  if (options.crease_angle && !(*options.crease_angle > 0 && *options.crease_angle <= std::numbers::pi))
+    return usage("crease_angle must lie between 0 and pi");
   for (const std::uint32_t v : options.locked_vertices)
     if (v >= vertices) return usage("a locked vertex is not of the mesh");
   return {};
@@ -142,9 +146,14 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
           mesh.vertices[mesh.origin(4 * f + i)].source |= CollapseVertex::kLocked;
   const bool in_order = vertex_order.empty();
   vertex_order = {};
-  sum_quadrics(mesh, options.boundary == DecimateBoundary::kInShape
-                         ? static_cast<float>(options.boundary_weight)
-                         : 0.0f);
+  detail::ConstraintWeights weights;
+  if (options.boundary == DecimateBoundary::kInShape)
+    weights.boundary = static_cast<float>(options.boundary_weight);
+  if (options.crease_angle) {
+    weights.crease = static_cast<float>(options.crease_weight);
+    weights.crease_cosine = static_cast<float>(std::cos(*options.crease_angle));
+  }
+  sum_quadrics(mesh, weights);
 
   Limits limits;
   limits.faces = options.target_faces.value_or(0);

@@ -20,40 +20,59 @@ void add_plane(CollapseVertex& v, const std::array<float, 3>& n, float w) {
   v.weight += w;
 }
 
+struct AreaVector {
+  std::array<float, 3> twice;
+  float length;
+};
+AreaVector area_of(const CollapseMesh& mesh, const CollapseMesh::Face& face) {
+  const auto &a = mesh.vertices[face.origin[0]].position, &b = mesh.vertices[face.origin[1]].position,
+             &c = mesh.vertices[face.origin[2]].position;
+  const std::array<float, 3> s = {b[0] - a[0], b[1] - a[1], b[2] - a[2]},
+                             r = {c[0] - b[0], c[1] - b[1], c[2] - b[2]};
+  const std::array<float, 3> n = {s[1] * r[2] - s[2] * r[1], s[2] * r[0] - s[0] * r[2],
+                                  s[0] * r[1] - s[1] * r[0]};
+  return {n, std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])};
+}
+
+/// Of the plane that stands on half-edge i of a face of unit normal n; 0: none does.
+float constraint(const CollapseMesh& mesh, const CollapseMesh::Face& face, std::uint32_t i,
+                 const std::array<float, 3>& n, const ConstraintWeights& weights) {
+  if (mesh.is_ghost(face.twin[i])) return weights.boundary;
+  if (!(weights.crease > 0)) return 0.0f;
+  const AreaVector other = area_of(mesh, mesh.face(face.twin[i]));
+  const float along = n[0] * other.twice[0] + n[1] * other.twice[1] + n[2] * other.twice[2];
+  return along < weights.crease_cosine * other.length ? weights.crease : 0.0f;
+}
+
 }  // namespace
 
-void sum_quadrics(CollapseMesh& mesh, float boundary_weight) {
+void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights) {
   constexpr std::uint32_t kAhead = 16;
   const auto last = static_cast<std::uint32_t>(mesh.face_count()) - 1;
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     const CollapseMesh::Face& face = mesh.face(4 * f);
     for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin)
       prefetch(&mesh.vertices[v]);
-    std::array<CollapseVertex*, 3> v{};
-    for (std::size_t i = 0; i < 3; ++i) v[i] = &mesh.vertices[face.origin[i]];
-    const auto side = [&](std::size_t i) {
-      const auto &a = v[i]->position, &b = v[(i + 1) % 3]->position;
-      return std::array<float, 3>{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    };
-    const std::array<float, 3> s = side(0), r = side(1);
-    std::array<float, 3> n = {s[1] * r[2] - s[2] * r[1], s[2] * r[0] - s[0] * r[2],
-                              s[0] * r[1] - s[1] * r[0]};
-    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    if (!(length > 0)) continue;
-    for (float& x : n) x /= length;
-    for (CollapseVertex* corner : v) add_plane(*corner, n, 0.5f * length);
-    if (!(boundary_weight > 0)) continue;
+    const AreaVector area = area_of(mesh, face);
+    if (!(area.length > 0)) continue;
+    std::array<float, 3> n = area.twice;
+    for (float& x : n) x /= area.length;
+    for (const std::uint32_t v : face.origin) add_plane(mesh.vertices[v], n, 0.5f * area.length);
+    if (!(weights.boundary > 0 || weights.crease > 0)) continue;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      if (!mesh.is_ghost(face.twin[i])) continue;
-      const std::array<float, 3> e = side(i);
-      const float area = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-      if (!(area > 0)) continue;
-      const float root = std::sqrt(area);
+      const float weight = constraint(mesh, face, i, n, weights);
+      if (!(weight > 0)) continue;
+      CollapseVertex &from = mesh.vertices[face.origin[i]], &to = mesh.vertices[face.origin[(i + 1) % 3]];
+      const auto &a = from.position, &b = to.position;
+      const std::array<float, 3> e = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+      const float squared = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+      if (!(squared > 0)) continue;
+      const float root = std::sqrt(squared);
       const std::array<float, 3> across = {(e[1] * n[2] - e[2] * n[1]) / root,
                                            (e[2] * n[0] - e[0] * n[2]) / root,
                                            (e[0] * n[1] - e[1] * n[0]) / root};
-      add_plane(*v[i], across, boundary_weight * area);
-      add_plane(*v[(i + 1) % 3], across, boundary_weight * area);
+      add_plane(from, across, weight * squared);
+      add_plane(to, across, weight * squared);
     }
   }
 }

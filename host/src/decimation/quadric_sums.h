@@ -5,9 +5,16 @@
 
 namespace vkmesh::detail {
 
+/// Planes that stand on edges, perpendicular to a face of theirs, weighted by these times the edge's squared
+/// length.
+struct ConstraintWeights {
+  float boundary = 0.0f;  ///< On boundary edges.
+  float crease = 0.0f;    ///< On edges between faces whose normals are farther apart than crease_cosine.
+  float crease_cosine = -1.0f;
+};
+
 /// Adds to the quadrics of the vertices, which must be zero, the planes of their faces, weighted by area, and
-/// for each boundary edge the plane that stands on it, perpendicular to its face, weighted by
-/// `boundary_weight` times its squared length. O(n).
-void sum_quadrics(CollapseMesh& mesh, float boundary_weight);
+/// constraint planes. O(n).
+void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights);
 
 }  // namespace vkmesh::detail

@@ -58,8 +58,12 @@ struct DecimateOptions {
   /// Default in shape.
   DecimateBoundary boundary = DecimateBoundary::kInShape;
   /// Weight of the constraint planes that stand on boundary edges, perpendicular to their face, relative to a
-  /// plane of the same area; for a boundary kept in shape. Default 100.
-  double boundary_weight = 100.0;
+  /// plane of the same area; for a boundary kept in shape. Default 10.
+  double boundary_weight = 10.0;
+  /// Edges bent by at least this, radians in (0, π], are creases: constraint planes stand on them as on the
+  /// boundary, one for each of their faces. Default none.
+  std::optional<double> crease_angle;
+  double crease_weight = 10.0;  ///< Of these planes. Default 10.
   /// Vertices that are neither moved nor removed, in any order. A collapse may end in one.
   std::vector<std::uint32_t> locked_vertices;
   /// Fill Decimated::history. Default off: it takes 28 bytes a collapse.

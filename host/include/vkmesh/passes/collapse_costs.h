@@ -24,8 +24,8 @@ struct CollapseCostOptions {
   Vec3 centre{0.0f};
   float scale = 1.0f;
   /// Of the planes that stand on boundary edges, perpendicular to their face, relative to a plane of the same
-  /// area. In [0, 2^20]. Default 100.
-  float boundary_weight = 100.0f;
+  /// area. In [0, 2^20]. Default 10.
+  float boundary_weight = 10.0f;
   CollapsePlacement placement = CollapsePlacement::kOptimal;  ///< Default optimal.
 };
 
