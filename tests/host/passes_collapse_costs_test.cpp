@@ -261,7 +261,7 @@ TEST_CASE("collapse costs in a plane are nothing, but for the corners of its bou
     const auto [p, q] = flat.mesh.vertices_of_edge(h);
     if (!flat.mesh.is_boundary(p) && !flat.mesh.is_boundary(q)) CHECK(flat.costs[h.index] == 0.0f);
   });
-  // (1, 0) lies on two boundary edges of length 1 and weight 100; half an edge up that is 200 / 4. (1, 1)
+  // (1, 0) lies on two boundary edges of length 1 and weight 10; half an edge up that is 20 / 4. (1, 1)
   // does not lie on any.
   CHECK(flat.costs[flat.mesh.find_half_edge(VertexId(1), VertexId(10)).index] == 5.0f);
   for (const float weight : {0.0f, 7.0f}) {
