@@ -130,25 +130,26 @@ bool FaceTurns::folds_over(const Vector& p, const Vector& q, const Vector& x, fl
   return (found & kOpposed) != 0 && more_against(p, d, x);
 }
 
-/// Twice the area vector of a face whose third corner lies at p + x; 0 if it has no area, or is none.
-FaceTurns::Vector FaceTurns::area(std::size_t face, const Vector& p, const Vector& x) const {
-  const auto from_x = [&](std::size_t k) {
-    return Vector{x_[k] - p[0] - x[0], y_[k] - p[1] - x[1], z_[k] - p[2] - x[2]};
-  };
-  const Vector u = from_x(face), v = from_x(face + 1);
-  if (!Normal(u[0], u[1], u[2], v[0], v[1], v[2]).exists()) return {};
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+/// The normal of a face whose third corner lies at p + x, twice its area vector over the squared sides; 0 if
+/// it has no area, or is none.
+FaceTurns::Vector FaceTurns::normal(std::size_t face, const Vector& p, const Vector& x) const {
+  const Vector u = corner(face, p, x), v = corner(face + 1, p, x);
+  const Normal n(u[0], u[1], u[2], v[0], v[1], v[2]);
+  return n.exists() ? Vector{n.x, n.y, n.z} : Vector{};
 }
 
 /// Whether a face that had no area and has one now looks against the others.
 bool FaceTurns::disagrees(const Vector& p, const Vector& d, const Vector& x) const {
   Vector sum{};
   for (std::size_t k = 0; k < faces_; ++k) {
-    const Vector n = area(k, p, k < at_p_ ? Vector{} : d);
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += n[i];
+    const Vector third = k < at_p_ ? Vector{} : d;
+    const Vector n = normal(k, p, third), u = corner(k, p, third), v = corner(k + 1, p, third);
+    if (n == Vector{}) continue;
+    const float sides = dot(u, u) + dot(v, v);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += sides * n[i];
   }
   for (std::size_t k = 0; k < faces_; ++k)
-    if (dot(sum, area(k, p, x)) < 0) return true;
+    if (dot(sum, normal(k, p, x)) < 0) return true;
   return false;
 }
 
@@ -157,11 +158,11 @@ bool FaceTurns::disagrees(const Vector& p, const Vector& d, const Vector& x) con
 bool FaceTurns::more_against(const Vector& p, const Vector& d, const Vector& x) const {
   float after = 1, before = 1;
   for (std::size_t k = 0; k < faces_; ++k) {
-    after = std::min(after, cosine(area(k, p, x), area(k + 1, p, x)));
+    after = std::min(after, cosine(normal(k, p, x), normal(k + 1, p, x)));
     // Faces of p that follow each other have an edge in common, and so have those of q.
     if (k + 1 == at_p_ || k + 1 == faces_) continue;
     const Vector third = k < at_p_ ? Vector{} : d;
-    before = std::min(before, cosine(area(k, p, third), area(k + 1, p, third)));
+    before = std::min(before, cosine(normal(k, p, third), normal(k + 1, p, third)));
   }
   return after < before;
 }

@@ -31,7 +31,11 @@ class FaceTurns {
  private:
   using Vector = std::array<float, 3>;
 
-  [[nodiscard]] Vector area(std::size_t face, const Vector& p, const Vector& x) const;
+  /// Relative to p + x.
+  [[nodiscard]] Vector corner(std::size_t k, const Vector& p, const Vector& x) const {
+    return {x_[k] - p[0] - x[0], y_[k] - p[1] - x[1], z_[k] - p[2] - x[2]};
+  }
+  [[nodiscard]] Vector normal(std::size_t face, const Vector& p, const Vector& x) const;
   [[nodiscard]] bool disagrees(const Vector& p, const Vector& d, const Vector& x) const;
   [[nodiscard]] bool more_against(const Vector& p, const Vector& d, const Vector& x) const;
 
