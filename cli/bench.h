@@ -45,7 +45,7 @@ class BenchPlace {
   /// Calls use(pass) with each pass in turn; what a pass needs in place lives as long as that call.
   virtual Result<void> for_each_pass(const BenchSubject& subject, const std::string& only,
                                      const std::function<Result<void>(const BenchPass&)>& use) = 0;
-  /// Milliseconds of a plain copy that reads and writes so many bytes together: half of them each.
+  /// Milliseconds of a plain copy of so many bytes, each read and written.
   virtual Result<double> copy(std::uint64_t bytes) = 0;
 };
 

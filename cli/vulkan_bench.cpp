@@ -78,14 +78,14 @@ class VulkanBench : public BenchPlace {
   }
 
   Result<double> copy(std::uint64_t bytes) override {
-    const std::uint64_t half = std::max<std::uint64_t>(bytes / 8 * 4, 4);
-    if (!from_ || from_->size() != half) {
+    const std::uint64_t whole = std::max<std::uint64_t>(bytes / 4 * 4, 4);
+    if (!from_ || from_->size() != whole) {
       from_.reset();
       to_.reset();
-      VKMESH_TRY(from_, Buffer::create(*context_, half, BufferMemory::kDevice, "copied"));
-      VKMESH_TRY(to_, Buffer::create(*context_, half, BufferMemory::kDevice, "copy"));
+      VKMESH_TRY(from_, Buffer::create(*context_, whole, BufferMemory::kDevice, "copied"));
+      VKMESH_TRY(to_, Buffer::create(*context_, whole, BufferMemory::kDevice, "copy"));
     }
-    return time([&](Recorder& recorder) { return recorder.copy(*from_, *to_, half); });
+    return time([&](Recorder& recorder) { return recorder.copy(*from_, *to_, whole); });
   }
 
  private:

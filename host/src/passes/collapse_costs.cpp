@@ -4,6 +4,7 @@
 #include <vkmesh/passes/collapse_costs.h>
 
 #include "catching.h"
+#include "large_pages.h"
 #include "parallel.h"
 #include "passes/clones.h"
 #include "passes/edge_values.h"
@@ -203,7 +204,7 @@ Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh, std::span<
     const auto scaled = [&](std::size_t h) {
       return zero_below((positions[corners[h]] - options.centre) * options.scale, VKMESH_TINY_DIRECTION);
     };
-    std::vector<VertexQuadric> result(positions.size(), VertexQuadric{});
+    std::vector<VertexQuadric> result = detail::large_vector<VertexQuadric>(positions.size());
     // The planes of a block of faces on any core, then their sums in the order in which the shader gathers.
     const auto make = [&](std::size_t begin, std::size_t end, Planes& block) {
       block.normals.resize(end - begin);

@@ -5,6 +5,7 @@
 #include <vkmesh/passes/triangle_normals.h>
 
 #include "catching.h"
+#include "large_pages.h"
 #include "parallel.h"
 #include "passes/blocks.h"
 #include "passes/pass_input.h"
@@ -31,8 +32,8 @@ Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const
     const auto corners = mesh.origins(), twins = mesh.twins();
     VKMESH_TRY(const std::vector<Vec3> normals, triangle_normals(mesh, positions));
     DihedralAngles result;
-    result.half_edge.assign(corners.size(), 0.0f);
-    result.vertex_maximum.assign(positions.size(), 0.0f);
+    result.half_edge = detail::large_vector<float>(corners.size());
+    result.vertex_maximum = detail::large_vector<float>(positions.size());
     // Edges are gathered in blocks small enough to stay in the cache, so that the angles fill vector
     // registers.
     const auto measure = [&](std::size_t begin, std::size_t end, Block& block) {

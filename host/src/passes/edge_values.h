@@ -9,6 +9,7 @@
 
 #include <vkmesh/half_edge_mesh.h>
 
+#include "large_pages.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -23,7 +24,7 @@ template <class Block, class Take, class Compute>
 std::vector<float> edge_values(const HalfEdgeMesh& mesh, bool boundary_computed, float boundary, Take&& take,
                                Compute&& compute) {
   const auto twins = mesh.twins();
-  std::vector<float> values(mesh.half_edge_count(), boundary);
+  std::vector<float> values = large_vector<float>(mesh.half_edge_count());
   parallel_ranges(values.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     Block block;
     std::array<std::uint32_t, kEdgeBlock> edges;
@@ -40,7 +41,11 @@ std::vector<float> edge_values(const HalfEdgeMesh& mesh, bool boundary_computed,
     };
     for (auto h = static_cast<std::uint32_t>(begin); h < end; ++h) {
       const std::uint32_t t = twins[h];
-      if (t < h || (t == kInvalid && !boundary_computed)) continue;
+      if (t < h) continue;
+      if (t == kInvalid && !boundary_computed) {
+        values[h] = boundary;
+        continue;
+      }
       edges[count] = h;
       take(block, count, h);
       if (++count == kEdgeBlock) finish();

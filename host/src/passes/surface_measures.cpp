@@ -5,6 +5,7 @@
 #include <vkmesh/passes/surface_measures.h>
 
 #include "catching.h"
+#include "large_pages.h"
 #include "parallel.h"
 #include "passes/clones.h"
 #include "passes/pass_input.h"
@@ -36,21 +37,29 @@ std::vector<T> by_blocks(std::size_t count, Reduce&& reduce) {
   return results;
 }
 
+// Joins the bounds that bounds(i) tells, of [begin, end).
+template <class Of>
+Bounds joined(std::size_t begin, std::size_t end, Of&& bounds) {
+  Bounds all = bounds(begin);
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const Bounds more = bounds(i);
+    for (int k = 0; k < 3; ++k) {
+      if (more.low[k] < all.low[k]) all.low[k] = more.low[k];
+      if (more.high[k] > all.high[k]) all.high[k] = more.high[k];
+    }
+  }
+  return all;
+}
+
 Bounds bounds_of(std::span<const Vec3> p) {
   if (p.empty()) return {};
-  std::vector<Bounds> level(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) level[i] = {p[i], p[i]};
-  do {
+  std::vector<Bounds> level = by_blocks<Bounds>(p.size(), [&](std::size_t begin, std::size_t end) {
+    return joined(begin, end, [&](std::size_t i) { return Bounds{p[i], p[i]}; });
+  });
+  while (level.size() > 1)
     level = by_blocks<Bounds>(level.size(), [&](std::size_t begin, std::size_t end) {
-      Bounds all = level[begin];
-      for (std::size_t i = begin + 1; i < end; ++i)
-        for (int k = 0; k < 3; ++k) {
-          if (level[i].low[k] < all.low[k]) all.low[k] = level[i].low[k];
-          if (level[i].high[k] > all.high[k]) all.high[k] = level[i].high[k];
-        }
-      return all;
+      return joined(begin, end, [&](std::size_t i) { return level[i]; });
     });
-  } while (level.size() > 1);
   return level[0];
 }
 
@@ -151,7 +160,7 @@ Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh, std::span<con
   return detail::catching([&]() -> Result<SurfaceMeasures> {
     VKMESH_CHECK(detail::require_triangles(mesh, "surface_measures"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
-    std::vector<Vec3> p(positions.size());
+    std::vector<Vec3> p = detail::large_vector<Vec3>(positions.size());
     VKMESH_CHECK(prepare_positions(positions, p));
     return to_surface_measures(detail::raw_measures(mesh.origins(), p));
   });

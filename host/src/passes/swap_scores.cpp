@@ -64,7 +64,8 @@ VKMESH_FLAT_CLONES void scores_by_angle(const Quadrilaterals& of, std::size_t co
   for (std::size_t i = 0; i < count; ++i)
     out[i] = score_of<SwapCriterion::kMinAngle>(of.p[i], of.q[i], of.left[i], of.right[i]);
 }
-VKMESH_FLAT_CLONES void scores_by_quality(const Quadrilaterals& of, std::size_t count, float* __restrict out) {
+VKMESH_FLAT_CLONES void scores_by_quality(const Quadrilaterals& of, std::size_t count,
+                                          float* __restrict out) {
   for (std::size_t i = 0; i < count; ++i)
     out[i] = score_of<SwapCriterion::kAspectRatio>(of.p[i], of.q[i], of.left[i], of.right[i]);
 }

@@ -50,7 +50,7 @@ Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<con
         for (std::size_t f = 0; f < block.normals.size(); ++f)
           for (std::size_t i = 0; i < 3; ++i) normals[corners[3 * f + i]] += block.normals[f];
     };
-    detail::parallel_in_order<Block>(mesh.face_count(), 1 << 12, weigh, scatter);
+    detail::parallel_in_order<Block>(mesh.face_count(), 1 << 14, weigh, scatter);
     detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
       detail::to_unit_vectors(std::span(normals).subspan(begin, end - begin));
     });
