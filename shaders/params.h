@@ -65,7 +65,7 @@ struct LaplacianSmoothingParams {
   VKMESH_FLOATS source;        ///< 3 a vertex
   VKMESH_FLOATS target;        ///< 3 a vertex: written
   VKMESH_FLOAT factor;         ///< λ or μ
-  VKMESH_UINT boundary_rule;  ///< SmoothingBoundary
+  VKMESH_UINT boundary_rule;   ///< SmoothingBoundary
 };
 
 // Of SmoothingBoundary.
