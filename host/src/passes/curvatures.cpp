@@ -27,8 +27,8 @@ struct Shares {
   float angle[kMost] = {};
   float area[kMost] = {};  // Eight times.
 };
-VKMESH_CLONES void compute(Shares& out, const RingPoints& here, const RingPoints& q, const RingPoints& r,
-                           std::size_t count) {
+VKMESH_CLONES void compute_shares(Shares& out, const RingPoints& here, const RingPoints& q,
+                                  const RingPoints& r, std::size_t count) {
   Shares s;
   float twice_areas[kMost], products[kMost];
   for (std::size_t i = 0; i < count; ++i) {
@@ -101,29 +101,13 @@ VKMESH_CLONES void compute(Curvatures& out, const Sums& sums, float whole, std::
 void curvatures_of(const NodeNeighbours& neighbours, const RingGroup& group, const Vec3* positions,
                    VertexCurvature* out) {
   const std::size_t count = group.vertices.size();
-  RingPoints here, q, r;
+  RingPoints here;
   here.take(group, positions);
-  q.take(group, positions, neighbours, 0);
-  // The triangle between the last neighbour and the first, which is none on the boundary.
-  Shares last;
-  if (!group.boundary) {
-    r.take(group, positions, neighbours, group.valence - 1);
-    compute(last, here, r, q, count);
-  }
-  // Those before and after each edge.
-  Shares before = last, after;
   Sums sums;
-  for (std::uint32_t k = 0; k < group.valence; ++k) {
-    if (k + 1 < group.valence) {
-      r.take(group, positions, neighbours, k + 1);
-      compute(after, here, q, r, count);
-    } else {
-      after = last;
-    }
-    add(sums, here, q, before, after, count);
-    std::swap(before, after);
-    q = r;
-  }
+  detail::go_around<Shares>(group, positions, neighbours, here, compute_shares,
+                            [&](const RingPoints& q, const Shares& before, const Shares& after, std::size_t) {
+                              add(sums, here, q, before, after, count);
+                            });
   Curvatures c;
   compute(c, sums, group.boundary ? 1.0f : 2.0f, count);
   if (group.boundary) c.mean = c.gaussian = {};

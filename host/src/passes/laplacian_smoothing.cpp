@@ -116,29 +116,12 @@ VKMESH_CLONES void steps_towards(RingPoints& here, const Weighted& mean, float f
 void cotangent_steps(const NodeNeighbours& neighbours, const RingGroup& group, float factor,
                      const Vec3* source, Vec3* target) {
   const std::size_t count = group.vertices.size();
-  RingPoints here, q, r;
+  RingPoints here;
   here.take(group, source);
-  q.take(group, source, neighbours, 0);
-  // The triangle between the last neighbour and the first, which is none on the boundary.
-  Cotangents last;
-  if (!group.boundary) {
-    r.take(group, source, neighbours, group.valence - 1);
-    compute(last, here, r, q, count);
-  }
-  // Those before and after each edge.
-  Cotangents before = last, after;
   Weighted mean;
-  for (std::uint32_t k = 0; k < group.valence; ++k) {
-    if (k + 1 < group.valence) {
-      r.take(group, source, neighbours, k + 1);
-      compute(after, here, q, r, count);
-    } else {
-      after = last;
-    }
-    add(mean, q, before, after, count);
-    before = after;
-    q = r;
-  }
+  detail::go_around<Cotangents>(group, source, neighbours, here, compute,
+                                [&](const RingPoints& q, const Cotangents& before, const Cotangents& after,
+                                    std::size_t) { add(mean, q, before, after, count); });
   steps_towards(here, mean, factor, count);
   for (std::size_t i = 0; i < count; ++i) target[group.vertices[i]] = here[i];
 }

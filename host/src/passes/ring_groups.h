@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <vkmesh/node_neighbours.h>
@@ -42,6 +43,35 @@ struct RingPoints {
       set(i, positions[ids[neighbours.offsets[group.vertices[i]] + k]]);
   }
 };
+
+/// Goes around the vertices `here` of a group. compute(fan, here, q, r, count) tells what the triangles here,
+/// q, r have to say, as a Fan; add(q, before, after, count) takes it for the edges from here to q: of the
+/// triangles before and after each, where there is none a Fan as it is made.
+template <class Fan, class Compute, class Add>
+void go_around(const RingGroup& group, const Vec3* positions, const NodeNeighbours& neighbours,
+               const RingPoints& here, Compute&& compute, Add&& add) {
+  const std::size_t count = group.vertices.size();
+  RingPoints q, r;
+  q.take(group, positions, neighbours, 0);
+  // The triangle between the last neighbour and the first, which is none on the boundary.
+  Fan last;
+  if (!group.boundary) {
+    r.take(group, positions, neighbours, group.valence - 1);
+    compute(last, here, r, q, count);
+  }
+  Fan before = last, after;
+  for (std::uint32_t k = 0; k < group.valence; ++k) {
+    if (k + 1 < group.valence) {
+      r.take(group, positions, neighbours, k + 1);
+      compute(after, here, q, r, count);
+    } else {
+      after = last;
+    }
+    add(q, before, after, count);
+    std::swap(before, after);
+    q = r;
+  }
+}
 
 /// All vertices that have neighbours, but those whose bit is set in `left_out` (as in
 /// NodeNeighbours::boundary_bits), in groups. O(vertices), in parallel. 4 bytes a vertex.
