@@ -12,7 +12,8 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_order.h"
 #include "decimation/collapse_queues.h"
-#include "decimation/decimation.h"
+#include "decimation/driver.h"
+#include "decimation/edge_collapses.h"
 #include "decimation/frame.h"
 #include "decimation/gather_result.h"
 #include "decimation/quadric_sums.h"
@@ -23,24 +24,20 @@ namespace {
 
 using namespace detail;
 
-template <class Removal, class Queue>
-Result<Outcome> run(CollapseMesh& mesh, bool keep_events, const Limits& limits, std::size_t vertices,
-                    const Progress& progress) {
-  Decimation<Removal, Queue> decimation(mesh, limits, mesh.face_count(), vertices, keep_events);
-  return decimation.run(progress);
-}
+template <class Placement, class Queue>
+constexpr auto kByEdgeCollapses = run_removals<EdgeCollapses<Placement, Queue>>;
 
-Result<Outcome> run(CollapseMesh& mesh, const DecimateOptions& options, CollapseOrder order,
-                    const Limits& limits, std::size_t vertices, const Progress& progress) {
-  const bool history = options.keep_history, exact = order == CollapseOrder::kExact;
+Result<Outcome> run(DecimationState& state, const DecimateOptions& options, CollapseOrder order,
+                    const Progress& progress) {
+  const bool exact = order == CollapseOrder::kExact;
   if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
       options.placement == CollapsePlacement::kEndpoint)
-    return (exact ? run<EndCollapse, ExactQueue> : run<EndCollapse, LazyQueue>)(mesh, history, limits,
-                                                                                vertices, progress);
+    return (exact ? kByEdgeCollapses<EndPlacement, ExactQueue>
+                  : kByEdgeCollapses<EndPlacement, LazyQueue>)(state, progress);
   if (options.placement == CollapsePlacement::kMidpoint)
-    return run<MidpointCollapse, ExactQueue>(mesh, history, limits, vertices, progress);
-  return (exact ? run<OptimalCollapse, ExactQueue> : run<OptimalCollapse, LazyQueue>)(mesh, history, limits,
-                                                                                      vertices, progress);
+    return kByEdgeCollapses<MidpointPlacement, ExactQueue>(state, progress);
+  return (exact ? kByEdgeCollapses<OptimalPlacement, ExactQueue>
+                : kByEdgeCollapses<OptimalPlacement, LazyQueue>)(state, progress);
 }
 
 Result<void> check(const DecimateOptions& options, std::size_t vertices) {
@@ -171,7 +168,8 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (options.time_limit)
     limits.seconds =
         *options.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  VKMESH_TRY(Outcome outcome, run(mesh, options, order, limits, used, progress));
+  DecimationState state{mesh, limits, mesh.face_count(), used, options.keep_history, {}};
+  VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
   return gather(mesh, points, in_order, frame, outcome);
 }
 

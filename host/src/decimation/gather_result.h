@@ -13,7 +13,7 @@
 #include <vkmesh/handles.h>
 
 #include "decimation/collapse_mesh.h"
-#include "decimation/decimation.h"
+#include "decimation/driver.h"
 #include "decimation/frame.h"
 
 namespace vkmesh::detail {

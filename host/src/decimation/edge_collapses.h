@@ -1,9 +1,8 @@
-// The run of a decimation: edges from a queue, judged and collapsed.
+// Decimation by collapsing edges: taken from a queue, judged, collapsed.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -15,125 +14,50 @@
 #include <vkmesh/handles.h>
 
 #include "decimation/collapse_mesh.h"
+#include "decimation/driver.h"
 #include "decimation/edge_batch.h"
 #include "decimation/face_turns.h"
 
 namespace vkmesh::detail {
 
-// Removals by quadric error: where the point goes, and what is known of the cost.
+// Edge collapses by quadric error: where the point goes, and what is known of the cost.
 
 /// Which edges of the kept vertex may cost less after a collapse.
 enum class MayFall { kNone, kOfGone, kAll };
 
-struct OptimalCollapse {
+struct OptimalPlacement {
   static constexpr MayFall kMayFall = MayFall::kNone;
   static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
 };
-struct MidpointCollapse {
+struct MidpointPlacement {
   static constexpr MayFall kMayFall = MayFall::kAll;
   static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
 };
 /// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those
 /// that q had before only cost more.
-struct EndCollapse {
+struct EndPlacement {
   static constexpr MayFall kMayFall = MayFall::kOfGone;
   static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
 };
 
-constexpr std::size_t kBatchesBetweenReports = 64;
-
-enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked };
-
-struct Limits {
-  std::size_t faces = 0, vertices = 0;
-  double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
-  double seconds = std::numeric_limits<double>::infinity();
-  float cos_deviation = 0;
-};
-
-struct Event {
-  std::uint32_t kept, removed;
-  std::array<float, 3> position;
-  bool moved;  // from where the input has it
-  std::array<std::uint32_t, 2> faces;
-};
-
-struct Outcome {
-  DecimateStop stop = DecimateStop::kTargetReached;
-  double error2 = 0;
-  std::size_t collapses = 0;
-  std::array<std::size_t, 5> rejected{};  // by Legality
-  std::vector<Event> events;
-};
-
-/// One run: takes the cheapest edge, collapses it if that is legal, until a limit is met.
+/// Edge collapses, the cheapest first.
 ///
 /// Each edge stands in the queue at most once in earnest, by the half-edge that is tagged as queued; what the
 /// queue serves without the tag is stale. An edge whose collapse was found illegal is parked, and comes back
 /// when a vertex next to it has changed: nothing else can make it legal.
-template <class Removal, class Queue>
-class Decimation {
+template <class Placement, class Queue>
+class EdgeCollapses {
  public:
-  Decimation(CollapseMesh& mesh, const Limits& limits, std::size_t faces, std::size_t vertices,
-             bool keep_events)
-      : mesh_(mesh),
-        vertices_(mesh.vertices),
-        limits_(limits),
-        keep_events_(keep_events),
-        queue_(mesh.half_edge_bound(), 3 * mesh.face_count() / 2 + 1),
-        faces_(faces),
-        left_(vertices) {}
+  explicit EdgeCollapses(DecimationState& state)
+      : state_(state),
+        mesh_(state.mesh),
+        vertices_(state.mesh.vertices),
+        queue_(mesh_.half_edge_bound(), 3 * mesh_.face_count() / 2 + 1) {}
 
-  Result<Outcome> run(const Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
-    if (!reached()) fill();
-    const std::size_t first_faces = faces_, first_vertices = left_;
-    std::array<std::uint32_t, Queue::kBatch> taken{};
-    std::size_t batches = 0;
-    bool exhausted = false;
-    while (!reached()) {
-      if (batches++ % (kBatchesBetweenReports * EdgeBatch::kSize / Queue::kBatch) == 0) {
-        if (progress) {
-          const auto share = [](std::size_t first, std::size_t now, std::size_t last) {
-            return first <= last ? 1.0 : static_cast<double>(first - now) / static_cast<double>(first - last);
-          };
-          const double done = std::max(share(first_faces, faces_, limits_.faces),
-                                       share(first_vertices, left_, limits_.vertices));
-          if (!progress(std::min(done, 1.0)))
-            return fail(ErrorCode::kInterrupted, "decimation was cancelled");
-        }
-        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >=
-            limits_.seconds) {
-          outcome_.stop = DecimateStop::kTimeLimit;
-          break;
-        }
-      }
-      const std::size_t count = queue_.take(taken);
-      if (count == 0) {
-        exhausted = true;
-        break;
-      }
-      serve(std::span(taken).first(count));
-    }
-    if (exhausted)
-      outcome_.stop = held_by_error() ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
-    if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
-    return std::move(outcome_);
-  }
+  /// About how many removals one step tries.
+  static constexpr std::size_t kStep = Queue::kBatch;
 
- private:
-  [[nodiscard]] bool reached() const { return faces_ <= limits_.faces || left_ <= limits_.vertices; }
-
-  // The edges of these half-edges, into the batch.
-  void evaluate(std::span<const std::uint32_t> edges) {
-    batch_.gather(edges.size(), [&](std::size_t i) {
-      const std::uint32_t h = edges[i];
-      return std::pair(&vertices_[mesh_.origin(h)], &vertices_[mesh_.target(h)]);
-    });
-    Removal::place(batch_, edges.size());
-  }
-
-  // All edges with their costs.
+  /// All edges with their costs.
   void fill() {
     constexpr std::uint32_t kAhead = 64;
     std::array<std::uint32_t, EdgeBatch::kSize + 1> ids{};
@@ -156,6 +80,38 @@ class Decimation {
     }
     flush();
     queue_.start();
+  }
+
+  /// Takes the next of the queue and does what is legal and due. False when nothing is left.
+  bool step() {
+    std::array<std::uint32_t, Queue::kBatch> taken{};
+    const std::size_t count = queue_.take(taken);
+    serve(std::span(taken).first(count));
+    return count > 0;
+  }
+
+  /// Whether an edge that was refused for its error still is.
+  [[nodiscard]] bool held_by_error() {
+    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
+      for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
+        if (!mesh_.alive(h) || !mesh_.parked(h)) continue;
+        const CollapseVertex &p = vertices_[mesh_.origin(h)], &q = vertices_[mesh_.target(h)];
+        evaluate(std::span(&h, 1));
+        if (static_cast<double>(batch_.cost[0]) >
+            state_.limits.error2 * (static_cast<double>(p.weight) + static_cast<double>(q.weight)))
+          return true;
+      }
+    return false;
+  }
+
+ private:
+  // The edges of these half-edges, into the batch.
+  void evaluate(std::span<const std::uint32_t> edges) {
+    batch_.gather(edges.size(), [&](std::size_t i) {
+      const std::uint32_t h = edges[i];
+      return std::pair(&vertices_[mesh_.origin(h)], &vertices_[mesh_.target(h)]);
+    });
+    Placement::place(batch_, edges.size());
   }
 
   // What follows happens to all edges of the batch before the next thing does: what one waits for from
@@ -183,7 +139,7 @@ class Decimation {
       }
     }
     walk_rings(due);
-    for (std::size_t i = 0; i < due && !reached(); ++i) attempt(i);
+    for (std::size_t i = 0; i < due && !state_.reached(); ++i) attempt(i);
     for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
     touched_.clear();
   }
@@ -259,7 +215,7 @@ class Decimation {
     if (legality == Legality::kLegal) {
       collapse(due, p, q, rings);
     } else {
-      ++outcome_.rejected[static_cast<std::size_t>(legality)];
+      ++state_.outcome.rejected[static_cast<std::size_t>(legality)];
       mesh_.clear_queued(h);
       mesh_.set_parked(h);
       vertices_[p].source |= CollapseVertex::kHasParked;
@@ -272,10 +228,10 @@ class Decimation {
     const Due& due = due_[i];
     if (due.end == 3) return Legality::kLocked;
     const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
-    if (static_cast<double>(due.cost) > limits_.error2 * weight) return Legality::kError;
+    if (static_cast<double>(due.cost) > state_.limits.error2 * weight) return Legality::kError;
     rings = rings_of(i);
     if (!link_condition(rings, q)) return Legality::kLink;
-    return turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, limits_.cos_deviation)
+    return turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, state_.limits.cos_deviation)
                ? Legality::kFoldOver
                : Legality::kLegal;
   }
@@ -355,28 +311,28 @@ class Decimation {
 
     const std::uint32_t t = mesh_.twin(h);
     const CollapseMesh::Face &one = mesh_.face(h), &other = mesh_.face(t);
-    if (keep_events_)
-      outcome_.events.push_back({kept.source & CollapseVertex::kSourceMask,
-                                 gone.source & CollapseVertex::kSourceMask,
-                                 place,
-                                 kept.has(CollapseVertex::kMoved),
-                                 {one.source, other.source}});
+    if (state_.keep_events)
+      state_.outcome.events.push_back({kept.source & CollapseVertex::kSourceMask,
+                                       gone.source & CollapseVertex::kSourceMask,
+                                       place,
+                                       kept.has(CollapseVertex::kMoved),
+                                       {one.source, other.source}});
     erase_queued(h);
     erase_queued(t);
     const std::uint32_t to_a = mesh_.twin(CollapseMesh::previous(h)),
                         from_a = mesh_.twin(CollapseMesh::next(h));
     const std::uint32_t to_b = mesh_.twin(CollapseMesh::previous(t)),
                         from_b = mesh_.twin(CollapseMesh::next(t));
-    faces_ -= mesh_.collapse(h);
-    --left_;
-    ++outcome_.collapses;
+    state_.faces -= mesh_.collapse(h);
+    --state_.vertices;
+    ++state_.outcome.collapses;
     if (kept.weight > 0)
-      outcome_.error2 =
-          std::max(outcome_.error2, static_cast<double>(due.cost) / static_cast<double>(kept.weight));
+      state_.outcome.error2 =
+          std::max(state_.outcome.error2, static_cast<double>(due.cost) / static_cast<double>(kept.weight));
     join(to_a, from_a);
     join(to_b, from_b);
-    if constexpr (Removal::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
-    if constexpr (Removal::kMayFall == MayFall::kOfGone)
+    if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
+    if constexpr (Placement::kMayFall == MayFall::kOfGone)
       refresh(q_now, keep_p ? rings.q.size() : rings.p.size());
     revive(q_now, rings);
   }
@@ -454,33 +410,16 @@ class Decimation {
     } while (h != start);
   }
 
-  [[nodiscard]] bool held_by_error() {
-    if (outcome_.rejected[static_cast<std::size_t>(Legality::kError)] == 0) return false;
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
-      for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
-        if (!mesh_.alive(h) || !mesh_.parked(h)) continue;
-        const CollapseVertex &p = vertices_[mesh_.origin(h)], &q = vertices_[mesh_.target(h)];
-        evaluate(std::span(&h, 1));
-        if (static_cast<double>(batch_.cost[0]) >
-            limits_.error2 * (static_cast<double>(p.weight) + static_cast<double>(q.weight)))
-          return true;
-      }
-    return false;
-  }
-
+  DecimationState& state_;
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
-  const Limits& limits_;
-  bool keep_events_;
   Queue queue_;
   EdgeBatch batch_;
-  std::size_t faces_, left_;
   std::array<Due, Queue::kBatch> due_;
   std::array<Walked, 2 * Queue::kBatch> walked_;  // those of p and q of each due edge
   std::vector<std::uint32_t> touched_, sorted_, ring_p_, ring_q_;
   FaceTurns turns_;
   std::uint32_t ring_flags_ = 0;
-  Outcome outcome_;
 };
 
 }  // namespace vkmesh::detail

@@ -1,0 +1,91 @@
+// What every way to decimate shares: the limits, what has been done, and the run until a limit is met.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <vkmesh/decimation/decimate.h>
+
+#include "decimation/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked };
+
+struct Limits {
+  std::size_t faces = 0, vertices = 0;
+  double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
+  double seconds = std::numeric_limits<double>::infinity();
+  float cos_deviation = 0;
+};
+
+struct Event {
+  std::uint32_t kept, removed;
+  std::array<float, 3> position;
+  bool moved;  // from where the input has it
+  std::array<std::uint32_t, 2> faces;
+};
+
+struct Outcome {
+  DecimateStop stop = DecimateStop::kTargetReached;
+  double error2 = 0;
+  std::size_t collapses = 0;
+  std::array<std::size_t, 5> rejected{};  // by Legality
+  std::vector<Event> events;
+};
+
+struct DecimationState {
+  CollapseMesh& mesh;
+  const Limits& limits;
+  std::size_t faces, vertices;  // that are left
+  bool keep_events;
+  Outcome outcome;
+
+  [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
+};
+
+constexpr std::size_t kRemovalsBetweenReports = 8192;
+
+/// Removes until a limit is met or nothing is left to remove. `Removals` has, as EdgeCollapses does, fill(),
+/// step(), kStep and held_by_error().
+template <class Removals>
+Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const Limits& limits = state.limits;
+  Removals removals(state);
+  if (!state.reached()) removals.fill();
+  const std::size_t first_faces = state.faces, first_vertices = state.vertices;
+  std::size_t steps = 0;
+  while (!state.reached()) {
+    if (steps++ % (kRemovalsBetweenReports / Removals::kStep) == 0) {
+      if (progress) {
+        const auto share = [](std::size_t first, std::size_t now, std::size_t last) {
+          return first <= last ? 1.0 : static_cast<double>(first - now) / static_cast<double>(first - last);
+        };
+        const double done = std::max(share(first_faces, state.faces, limits.faces),
+                                     share(first_vertices, state.vertices, limits.vertices));
+        if (!progress(std::min(done, 1.0))) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+      }
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >= limits.seconds) {
+        state.outcome.stop = DecimateStop::kTimeLimit;
+        break;
+      }
+    }
+    if (!removals.step()) {
+      const bool by_error = state.outcome.rejected[static_cast<std::size_t>(Legality::kError)] > 0;
+      state.outcome.stop =
+          by_error && removals.held_by_error() ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
+      break;
+    }
+  }
+  if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+  return std::move(state.outcome);
+}
+
+}  // namespace vkmesh::detail
