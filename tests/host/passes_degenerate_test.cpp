@@ -2,7 +2,6 @@
 // out is finite.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -24,31 +23,6 @@ using namespace vkmesh;
 
 namespace {
 
-std::map<std::string, IndexedFaceSet> degenerate_shapes() {
-  std::map<std::string, IndexedFaceSet> shapes;
-  for (const auto& [name, shape] :
-       {std::pair{"sphere", test::icosphere(2)}, std::pair{"grid", test::grid(6, 5)},
-        std::pair{"torus", test::torus(12, 8)}}) {
-    IndexedFaceSet set = shape;
-    set.points.emplace_back(0.3f, 0.2f, 0.1f);
-    shapes[name + std::string(", points that coincide")] = set;
-    IndexedFaceSet& coincide = shapes[name + std::string(", points that coincide")];
-    for (std::size_t v = 0; v + 1 < set.points.size(); v += 5) coincide.points[v] = coincide.points[v + 1];
-    IndexedFaceSet& slivers = shapes[name + std::string(", three points in a line")];
-    slivers = set;
-    for (std::size_t f = 0; f < set.face_count(); f += 7) {
-      const auto c = set.face(f);
-      slivers.points[c[0]] = 0.5f * (slivers.points[c[1]] + slivers.points[c[2]]);
-    }
-    for (Vec3& p : (shapes[name + std::string(", in a plane")] = set).points) p.z = 0.0f;
-    for (Vec3& p : (shapes[name + std::string(", in a line")] = set).points) p = Vec3(p.x, -p.x, 3 * p.x);
-    for (Vec3& p : (shapes[name + std::string(", in a point")] = set).points) p = Vec3(7.0f, -0.1f, 3e-20f);
-    for (Vec3& p : (shapes[name + std::string(", of no size to speak of")] = set).points) p *= 1e-40f;
-    for (Vec3& p : (shapes[name + std::string(", very large")] = set).points) p *= 0x1p56f;
-  }
-  return shapes;
-}
-
 bool finite(const std::vector<float>& values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
@@ -61,7 +35,7 @@ bool finite(const std::vector<Vec3>& values) {
 }  // namespace
 
 TEST_CASE("no pass makes NaN of degenerate triangles, edges without length or isolated points") {
-  for (const auto& [name, set] : degenerate_shapes()) {
+  for (const auto& [name, set] : test::degenerate_shapes()) {
     INFO(name);
     const HalfEdgeMesh mesh = test::half_edges(set);
     const NodeNeighbours neighbours = node_neighbours(mesh).value();

@@ -181,18 +181,8 @@ TEST_CASE("swap scores do not depend on the unit of length") {
 }
 
 TEST_CASE("swap scores of degenerate meshes are numbers, and twins agree") {
-  std::vector<IndexedFaceSet> shapes = {test::icosphere(3), test::grid(6, 6), test::cube()};
-  for (IndexedFaceSet& set : shapes) {
-    set.points[1] = set.points[0];
-    set.points[5] = 0.5f * (set.points[6] + set.points[7]);
-    set.points.emplace_back(0.1f, 0.2f, 0.3f);
-  }
-  IndexedFaceSet line = test::torus(6, 5), point = line;
-  for (Vec3& p : line.points) p = Vec3(p.x, 2 * p.x, -p.x);
-  for (Vec3& p : point.points) p = Vec3(4.0f);
-  shapes.push_back(line);
-  shapes.push_back(point);
-  for (const IndexedFaceSet& set : shapes)
+  for (const auto& [name, set] : test::degenerate_shapes()) {
+    INFO(name);
     for (const SwapCriterion criterion : kCriteria) {
       const HalfEdgeMesh mesh = test::half_edges(set);
       const auto scores = swap_scores(mesh, set.points, criterion).value();
@@ -201,6 +191,7 @@ TEST_CASE("swap scores of degenerate meshes are numbers, and twins agree") {
         if (mesh.twins()[h] != kInvalid) CHECK(scores[h] == scores[mesh.twins()[h]]);
       }
     }
+  }
   CHECK(swap_scores(HalfEdgeMesh{}, {}).value().empty());
 }
 

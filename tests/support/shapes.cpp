@@ -256,6 +256,30 @@ IndexedFaceSet fin() {
   return mesh;
 }
 
+std::map<std::string, IndexedFaceSet> degenerate_shapes() {
+  std::map<std::string, IndexedFaceSet> shapes;
+  for (const auto& [name, shape] :
+       {std::pair{"sphere", icosphere(2)}, std::pair{"grid", grid(6, 5)}, std::pair{"torus", torus(12, 8)}}) {
+    IndexedFaceSet set = shape;
+    set.points.emplace_back(0.3f, 0.2f, 0.1f);
+    shapes[name + std::string(", points that coincide")] = set;
+    IndexedFaceSet& coincide = shapes[name + std::string(", points that coincide")];
+    for (std::size_t v = 0; v + 1 < set.points.size(); v += 5) coincide.points[v] = coincide.points[v + 1];
+    IndexedFaceSet& slivers = shapes[name + std::string(", three points in a line")];
+    slivers = set;
+    for (std::size_t f = 0; f < set.face_count(); f += 7) {
+      const auto c = set.face(f);
+      slivers.points[c[0]] = 0.5f * (slivers.points[c[1]] + slivers.points[c[2]]);
+    }
+    for (Vec3& p : (shapes[name + std::string(", in a plane")] = set).points) p.z = 0.0f;
+    for (Vec3& p : (shapes[name + std::string(", in a line")] = set).points) p = Vec3(p.x, -p.x, 3 * p.x);
+    for (Vec3& p : (shapes[name + std::string(", in a point")] = set).points) p = Vec3(7.0f, -0.1f, 3e-20f);
+    for (Vec3& p : (shapes[name + std::string(", of no size to speak of")] = set).points) p *= 1e-40f;
+    for (Vec3& p : (shapes[name + std::string(", very large")] = set).points) p *= 0x1p56f;
+  }
+  return shapes;
+}
+
 void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed) {
   // Not std::uniform_real_distribution: its values differ between standard libraries.
   std::mt19937 random(seed);

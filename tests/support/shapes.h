@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <string>
 
 #include <vkmesh/half_edge_mesh.h>
 #include <vkmesh/indexed_face_set.h>
@@ -42,6 +44,10 @@ IndexedFaceSet both(const IndexedFaceSet& a, const IndexedFaceSet& b, Vec3 offse
 IndexedFaceSet bow_tie();
 /// Three triangles on one edge.
 IndexedFaceSet fin();
+
+/// By name: spheres, grids and tori with points that coincide, that lie in a line, in a plane, very near and
+/// very far; each has a point that is in no face.
+std::map<std::string, IndexedFaceSet> degenerate_shapes();
 
 /// Moves every coordinate by a pseudo-random amount of at most `amplitude`; the same seed gives the same
 /// mesh.
