@@ -56,6 +56,8 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   if (options.operation == "half-edge-collapse" && options.placement != "optimal" &&
       options.placement != "endpoint")
     return fail(ErrorCode::kUsage, "a half-edge collapse ends in an endpoint: leave --placement out");
+  if (options.operation == "vertex-removal" && options.placement != "optimal")
+    return fail(ErrorCode::kUsage, "vertex removal moves no points: leave --placement out");
   use_host(job);
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
@@ -73,6 +75,7 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   DecimateOptions decimation;
   decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
   if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
+  if (options.operation == "vertex-removal") decimation.operation = DecimateOperation::kVertexRemoval;
   if (options.placement == "midpoint") decimation.placement = CollapsePlacement::kMidpoint;
   if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
   if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
@@ -138,9 +141,10 @@ void add_simplify(CLI::App& app, Program& program) {
   command
       ->add_option("--operation", options->operation,
                    "edge-collapse (default): both ends become one point, which may be new;\n"
-                   "half-edge-collapse: one end moves to the other, no new points are made")
+                   "half-edge-collapse: one end moves to the other, no new points are made;\n"
+                   "vertex-removal: a point goes, and the best triangles fill the hole")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"edge-collapse", "half-edge-collapse"}));
+      ->check(CLI::IsMember({"edge-collapse", "half-edge-collapse", "vertex-removal"}));
   command
       ->add_option(
           "--placement", options->placement,

@@ -147,4 +147,65 @@ bool CollapseMesh::close(std::span<const std::uint32_t> boundary) {
   return true;
 }
 
+std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32_t> edges,
+                                                     std::span<const std::array<std::uint8_t, 3>> triangles) {
+  const std::size_t n = edges.size();
+  // A triangle takes the record of the face that it has an edge of the hole in common with, so that a ghost
+  // remains a ghost; one without such an edge what is left, which no ghost's is, since ghosts come last.
+  std::vector<std::uint32_t> record(triangles.size(), kInvalid), vertex(n), outside(n);
+  std::vector<bool> used(n, false);
+  for (std::size_t i = 0; i < n; ++i) {
+    vertex[i] = target(edges[i]);
+    outside[i] = twin(next(edges[i]));
+  }
+  const auto edge_of = [&](std::size_t from, std::size_t to) { return (from + 1) % n == to ? from : n; };
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const std::size_t k : {1u, 2u, 0u}) {  // of an ear's ghost, the first is the only one of a ghost
+      const std::size_t edge = edge_of(triangles[t][k], triangles[t][(k + 1) % 3]);
+      if (edge == n) continue;
+      record[t] = edges[edge] >> 2;
+      used[edge] = true;
+      break;
+    }
+  std::size_t free = 0;
+  for (std::uint32_t& r : record) {
+    if (r != kInvalid) continue;
+    while (used[free]) ++free;
+    used[free] = true;
+    r = edges[free] >> 2;
+  }
+  std::array<std::uint32_t, 2> gone{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (used[i]) continue;
+    gone[count++] = faces_[edges[i] >> 2].source;
+    faces_[edges[i] >> 2].origin[0] = kInvalid;
+  }
+
+  std::vector<std::array<std::uint32_t, 3>> open;  // new edges of one triangle so far: from, to, half-edge
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    Face& face = faces_[record[t]];
+    face.tags = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3], h = 4 * record[t] + k;
+      face.origin[k] = vertex[from];
+      if (vertex[from] != apex_) vertices[vertex[from]].leading = h;
+      const std::size_t edge = edge_of(from, to);
+      if (edge != n) {
+        set_twins(h, outside[edge]);
+        continue;
+      }
+      const auto other =
+          std::find_if(open.begin(), open.end(), [&](const auto& e) { return e[0] == to && e[1] == from; });
+      if (other == open.end()) {
+        open.push_back({from, to, h});
+      } else {
+        set_twins(h, (*other)[2]);
+        open.erase(other);
+      }
+    }
+  }
+  return gone;
+}
+
 }  // namespace vkmesh::detail

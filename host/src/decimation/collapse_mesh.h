@@ -44,6 +44,16 @@ struct alignas(64) CollapseVertex {
 
   [[nodiscard]] bool has(std::uint32_t flag) const { return (source & flag) != 0; }
   [[nodiscard]] bool alive() const { return (leading & kGone) == 0; }
+
+  /// Moves the point about which the quadric is expressed.
+  void shift(const std::array<float, 3>& d) {
+    const std::array<float, 3> ad = {a[0] * d[0] + a[1] * d[1] + a[2] * d[2],
+                                     a[1] * d[0] + a[3] * d[1] + a[4] * d[2],
+                                     a[2] * d[0] + a[4] * d[1] + a[5] * d[2]};
+    const float sum = c + d[0] * (ad[0] + 2 * b[0]) + d[1] * (ad[1] + 2 * b[1]) + d[2] * (ad[2] + 2 * b[2]);
+    c = sum > 0 ? sum : 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) b[k] += ad[k];
+  }
 };
 static_assert(sizeof(CollapseVertex) == 64);
 
@@ -131,6 +141,13 @@ class CollapseMesh {
     faces_[t >> 2].origin[0] = kInvalid;
     return own;
   }
+
+  /// Removes the origin of `edges`, all that leave it, counter-clockwise, and puts these triangles in the
+  /// place of its faces: corners are numbers of edges, and stand for their targets, in ascending order, so
+  /// that the apex, if it is there, is that of the last. No new edge may be in the mesh. Returns the sources
+  /// of the two faces that went, kInvalid for a ghost. O(edges).
+  std::array<std::uint32_t, 2> fill_hole(std::span<const std::uint32_t> edges,
+                                         std::span<const std::array<std::uint8_t, 3>> triangles);
 
   LargeArray<CollapseVertex> vertices;
 

@@ -16,6 +16,7 @@ namespace vkmesh::detail {
 class LazyQueue {
  public:
   static constexpr std::size_t kBatch = EdgeBatch::kSize;
+  static constexpr bool kExact = false;
   LazyQueue(std::size_t, std::size_t edges) : queue_(edges) {}
   void fill(std::uint32_t id, float cost) { queue_.insert(id, cost); }
   void start() {}
@@ -33,6 +34,7 @@ class LazyQueue {
 class ExactQueue {
  public:
   static constexpr std::size_t kBatch = 1;
+  static constexpr bool kExact = true;
   ExactQueue(std::size_t half_edges, std::size_t) : heap_(half_edges) {}
   void fill(std::uint32_t id, float cost) { heap_.append(id, cost); }
   void start() { heap_.heapify(); }

@@ -18,6 +18,7 @@
 #include "decimation/gather_result.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/spatial_order.h"
+#include "decimation/vertex_removals.h"
 
 namespace vkmesh {
 namespace {
@@ -30,6 +31,9 @@ constexpr auto kByEdgeCollapses = run_removals<EdgeCollapses<Placement, Queue>>;
 Result<Outcome> run(DecimationState& state, const DecimateOptions& options, CollapseOrder order,
                     const Progress& progress) {
   const bool exact = order == CollapseOrder::kExact;
+  if (options.operation == DecimateOperation::kVertexRemoval)
+    return (exact ? run_removals<VertexRemovals<ExactQueue>>
+                  : run_removals<VertexRemovals<LazyQueue>>)(state, progress);
   if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
       options.placement == CollapsePlacement::kEndpoint)
     return (exact ? kByEdgeCollapses<EndPlacement, ExactQueue>

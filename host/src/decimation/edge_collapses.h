@@ -297,8 +297,8 @@ class EdgeCollapses {
       dk[k] = place[k] - kept.position[k];
       dg[k] = place[k] - gone.position[k];
     }
-    shift(kept, dk);
-    shift(gone, dg);
+    kept.shift(dk);
+    gone.shift(dg);
     for (std::size_t k = 0; k < 6; ++k) kept.a[k] += gone.a[k];
     for (std::size_t k = 0; k < 3; ++k) kept.b[k] += gone.b[k];
     kept.c += gone.c;
@@ -335,18 +335,6 @@ class EdgeCollapses {
     if constexpr (Placement::kMayFall == MayFall::kOfGone)
       refresh(q_now, keep_p ? rings.q.size() : rings.p.size());
     revive(q_now, rings);
-  }
-
-  // Moves the point about which the vertex' quadric is expressed.
-  static void shift(CollapseVertex& v, const std::array<float, 3>& d) {
-    const auto& a = v.a;
-    const std::array<float, 3> ad = {a[0] * d[0] + a[1] * d[1] + a[2] * d[2],
-                                     a[1] * d[0] + a[3] * d[1] + a[4] * d[2],
-                                     a[2] * d[0] + a[4] * d[1] + a[5] * d[2]};
-    const float c =
-        v.c + d[0] * (ad[0] + 2 * v.b[0]) + d[1] * (ad[1] + 2 * v.b[1]) + d[2] * (ad[2] + 2 * v.b[2]);
-    v.c = c > 0 ? c : 0.0f;
-    for (std::size_t k = 0; k < 3; ++k) v.b[k] += ad[k];
   }
 
   // The half-edges of a face that goes.

@@ -20,8 +20,9 @@ namespace vkmesh {
 
 /// What one step does to the mesh.
 enum class DecimateOperation {
-  kEdgeCollapse,     ///< Both ends of an edge become one point, which may be new.
-  kHalfEdgeCollapse  ///< One end of an edge moves to the other: no new points are made.
+  kEdgeCollapse,      ///< Both ends of an edge become one point, which may be new.
+  kHalfEdgeCollapse,  ///< One end of an edge moves to the other: no new points are made.
+  kVertexRemoval      ///< A vertex goes, and the best triangulation of the hole takes the place of its faces.
 };
 
 enum class DecimateBoundary {
