@@ -15,6 +15,7 @@
 
 #include <vkmesh/consolidate.h>
 #include <vkmesh/decimation/decimate.h>
+#include <vkmesh/decimation/decimate_index_buffer.h>
 
 #include "support/shapes.h"
 
@@ -621,6 +622,118 @@ TEST_CASE("One collapse with attributes is the least squares solution", "[decima
           1.08 *
               dense(*t, mesh.origin(HalfEdgeId(h)).index, mesh.target(HalfEdgeId(h)).index, unit, 10.0).cost);
   }
+}
+
+/// The vertex buffer that engines have: a vertex for each value of the only attribute.
+struct Buffers {
+  std::vector<Vec3> points;
+  std::vector<float> values;
+  std::vector<std::uint32_t> indices;
+};
+Buffers buffers_of(const Textured& t) {
+  Buffers b;
+  b.points.resize(t.values.size() / t.components);
+  b.values = t.values;
+  b.indices = t.corners;
+  for (std::size_t c = 0; c < t.corners.size(); ++c)
+    b.points[t.corners[c]] = t.mesh.points[t.mesh.corners[c]];
+  return b;
+}
+
+TEST_CASE("An index buffer is decimated over its own vertices", "[decimate]") {
+  for (const Textured& t : {unrolled_cylinder(40, 48), sphere_of_octants(4)}) {
+    Buffers b = buffers_of(t);
+    // Triangles of no area at a seam, as some engines join their strips.
+    const auto twin =
+        std::find_if(b.points.begin() + 1, b.points.end(), [&](const Vec3& p) { return p == b.points[0]; }) -
+        b.points.begin();
+    if (static_cast<std::size_t>(twin) < b.points.size())
+      b.indices.insert(b.indices.begin(), {0, static_cast<std::uint32_t>(twin), b.indices[1]});
+    DecimateOptions options = ways()[3];
+    options.target_ratio = 0.1;
+    options.attributes = {{t.components, b.values, {}, 0.01, AttributeKind::kPlain}};
+    const auto result = decimate_index_buffer(b.points, b.indices, options);
+    if (!result) FAIL(result.error().describe());
+    CHECK(result->stop == DecimateStop::kTargetReached);
+    CHECK(result->indices.size() / 3 <= t.mesh.face_count() / 10 + 1);
+    REQUIRE(result->source_face.size() == result->indices.size() / 3);
+
+    // The same as over corners with attributes.
+    options.attributes = {t.attribute(0.01)};
+    const Decimated d = run(t.mesh, options);
+    CHECK(result->error == d.error);
+    CHECK(result->attribute_error == d.attribute_error);
+    REQUIRE(result->indices.size() == d.attributes.corners.size());
+    for (std::size_t c = 0; c < result->indices.size(); ++c) {
+      const std::uint32_t v = result->indices[c];
+      REQUIRE(v < b.points.size());
+      CHECK(b.points[v] == d.positions[d.mesh.origins()[c]]);
+      for (std::size_t k = 0; k < t.components; ++k)
+        CHECK(b.values[t.components * v + k] ==
+              d.attributes.values[0][t.components * d.attributes.corners[c] + k]);
+    }
+    for (std::size_t f = 0; f < d.source_face.size(); ++f)
+      CHECK(result->source_face[f] == d.source_face[f] + (b.indices.size() - t.corners.size()) / 3);
+    // Without cracks: vertices at one place made one, it is a manifold of the input's boundary.
+    std::map<std::array<float, 3>, std::uint32_t> at;
+    IndexedFaceSet welded;
+    for (const std::uint32_t v : result->indices) {
+      const Vec3 p = b.points[v];
+      const auto [place, is_new] =
+          at.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(welded.points.size()));
+      if (is_new) welded.points.push_back(p);
+      welded.corners.push_back(place->second);
+    }
+    CHECK(half_edges(welded).boundary_loops().size() == half_edges(t.mesh).boundary_loops().size());
+    Textured level = t;
+    level.mesh = welded;
+    level.corners = result->indices;
+    const Seams before(t.mesh.corners, t.corners), after(level.mesh.corners, level.corners);
+    CHECK(after.charts == before.charts);
+    CHECK(after.loops() == before.loops());
+  }
+}
+
+TEST_CASE("Vertices at one place stay apart without attributes, and locks hold", "[decimate]") {
+  const Textured t = unrolled_cylinder(20, 24);
+  const Buffers b = buffers_of(t);
+  DecimateOptions options = ways()[3];
+  options.target_faces = 0;
+  options.max_normal_deviation = 3.0;
+  options.locked_vertices = {24 + 25 * 3, 12 + 25 * 10};  // the first on the seam, by its second name
+  options.locked_faces = {100};
+  options.locked_edges = {3 * 400 + 2};
+  const auto result = decimate_index_buffer(b.points, b.indices, options);
+  if (!result) FAIL(result.error().describe());
+  const std::set<std::uint32_t> used(result->indices.begin(), result->indices.end());
+  for (const std::uint32_t v : {25u * 3, 24u + 25 * 3, 12u + 25 * 10, b.indices[300], b.indices[301],
+                                b.indices[302], b.indices[1202], b.indices[1200]})
+    CHECK(used.count(v) == 1);
+  for (std::size_t i = 0; i < result->indices.size(); i += 3) {  // u never runs back over the seam
+    float low = 1, high = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float u = b.values[2 * result->indices[i + k]];
+      low = std::min(low, u);
+      high = std::max(high, u);
+    }
+    CHECK(high - low < 0.6f);
+  }
+  const auto code = [&](const DecimateOptions& o, std::span<const std::uint32_t> indices) {
+    return decimate_index_buffer(b.points, indices, o).error().code;
+  };
+  CHECK(code({}, b.indices) == ErrorCode::kUsage);
+  CHECK(code(options, std::span(b.indices).first(4)) == ErrorCode::kUsage);
+  const std::vector<std::uint32_t> beyond = {0, 1, static_cast<std::uint32_t>(b.points.size())};
+  CHECK(code(options, beyond) == ErrorCode::kUsage);
+  DecimateOptions bad = options;
+  bad.corner_groups = b.indices;
+  CHECK(code(bad, b.indices) == ErrorCode::kUsage);
+  bad = options;
+  bad.attributes = {{2, std::span(b.values).first(10), {}, 1.0, AttributeKind::kPlain}};
+  CHECK(code(bad, b.indices) == ErrorCode::kUsage);
+  bad = options;
+  bad.locked_vertices = {static_cast<std::uint32_t>(b.points.size())};
+  CHECK(code(bad, b.indices) == ErrorCode::kUsage);
 }
 
 TEST_CASE("Attributes of no weight change nothing but what is returned", "[decimate]") {

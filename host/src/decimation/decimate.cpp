@@ -18,6 +18,7 @@
 #include "decimation/edge_collapses.h"
 #include "decimation/frame.h"
 #include "decimation/gather_result.h"
+#include "decimation/prune.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/spatial_order.h"
 #include "decimation/vertex_removals.h"
@@ -51,25 +52,14 @@ Result<Outcome> run(DecimationState& state, const DecimateOptions& options, Coll
                                       : run_edge_collapses<false>)(state, options, exact, progress);
 }
 
-Result<void> check(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
+Result<void> check_attributes(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
   const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
-  if (options.max_error && !(*options.max_error >= 0)) return usage("max_error must be at least 0");
-  if (options.max_relative_error && !(*options.max_relative_error >= 0))
-    return usage("max_relative_error must be at least 0");
-  if (options.target_ratio && !(*options.target_ratio >= 0 && *options.target_ratio <= 1))
-    return usage("target_ratio must lie between 0 and 1");
-  if (options.time_limit && !(*options.time_limit >= 0)) return usage("time_limit must be at least 0");
-  if (!(options.max_normal_deviation > 0 && options.max_normal_deviation < std::numbers::pi))
-    return usage("max_normal_deviation must lie between 0 and pi");
-  if (!(options.boundary_weight >= 0 && std::isfinite(options.boundary_weight)))
-    return usage("boundary_weight must be at least 0 and finite");
-  if (!(options.crease_weight >= 0 && std::isfinite(options.crease_weight)))
-    return usage("crease_weight must be at least 0 and finite");
-  if (options.crease_angle && !(*options.crease_angle > 0 && *options.crease_angle <= std::numbers::pi))
-    return usage("crease_angle must lie between 0 and pi");
   if (!(options.seam_weight >= 0 && std::isfinite(options.seam_weight)))
     return usage("seam_weight must be at least 0 and finite");
-  if (!options.attributes.empty() && options.operation == DecimateOperation::kVertexRemoval)
+  if (!options.corner_groups.empty() && options.corner_groups.size() != corners)
+    return usage("corner_groups needs a number for each corner of the mesh");
+  const bool any = !options.attributes.empty() || !options.corner_groups.empty();
+  if (any && options.operation == DecimateOperation::kVertexRemoval)
     return usage("vertex removal takes no attributes: collapse edges or half-edges");
   for (const DecimateAttribute& a : options.attributes) {
     if (!(a.weight >= 0 && std::isfinite(a.weight)))
@@ -86,14 +76,41 @@ Result<void> check(const DecimateOptions& options, std::size_t vertices, std::si
     for (const float x : a.values)
       if (!std::isfinite(x)) return fail(ErrorCode::kUnsuitable, "decimation needs finite attributes");
   }
-  for (const std::uint32_t v : options.locked_vertices)
-    if (v >= vertices) return usage("a locked vertex is not of the mesh");
   return {};
 }
 
-/// Whether two corners at one vertex have the same values of all attributes.
-bool same_values(std::span<const DecimateAttribute> attributes, std::uint32_t c, std::uint32_t d) {
-  return std::all_of(attributes.begin(), attributes.end(), [&](const DecimateAttribute& a) {
+Result<void> check(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
+  const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
+  if (options.max_error && !(*options.max_error >= 0)) return usage("max_error must be at least 0");
+  if (options.max_relative_error && !(*options.max_relative_error >= 0))
+    return usage("max_relative_error must be at least 0");
+  if (options.target_ratio && !(*options.target_ratio >= 0 && *options.target_ratio <= 1))
+    return usage("target_ratio must lie between 0 and 1");
+  if (options.time_limit && !(*options.time_limit >= 0)) return usage("time_limit must be at least 0");
+  if (!(options.max_normal_deviation > 0 && options.max_normal_deviation < std::numbers::pi))
+    return usage("max_normal_deviation must lie between 0 and pi");
+  if (!(options.boundary_weight >= 0 && std::isfinite(options.boundary_weight)))
+    return usage("boundary_weight must be at least 0 and finite");
+  if (!(options.crease_weight >= 0 && std::isfinite(options.crease_weight)))
+    return usage("crease_weight must be at least 0 and finite");
+  if (options.crease_angle && !(*options.crease_angle > 0 && *options.crease_angle <= std::numbers::pi))
+    return usage("crease_angle must lie between 0 and pi");
+  for (const std::uint32_t v : options.locked_vertices)
+    if (v >= vertices) return usage("a locked vertex is not of the mesh");
+  for (const std::uint32_t h : options.locked_edges)
+    if (h >= corners) return usage("a locked edge is not of the mesh");
+  for (const std::uint32_t f : options.locked_faces)
+    if (f >= corners / 3) return usage("a locked face is not of the mesh");
+  for (const auto& size : {options.prune_size, options.prune_relative_size})
+    if (size && !(*size >= 0)) return usage("prune_size must be at least 0");
+  return check_attributes(options, vertices, corners);
+}
+
+/// Whether two corners at one vertex are of one group and have the same values of all attributes.
+bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t d) {
+  const auto& groups = options.corner_groups;
+  if (!groups.empty() && groups[c] != groups[d]) return false;
+  return std::all_of(options.attributes.begin(), options.attributes.end(), [&](const DecimateAttribute& a) {
     if (a.corners.empty() || a.corners[c] == a.corners[d]) return true;
     const auto value = [&](std::uint32_t corner) {
       return a.values.subspan(std::size_t{a.corners[corner]} * a.components, a.components);
@@ -101,6 +118,19 @@ bool same_values(std::span<const DecimateAttribute> attributes, std::uint32_t c,
     const auto one = value(c), other = value(d);
     return std::equal(one.begin(), one.end(), other.begin());
   });
+}
+
+/// Edges and faces stay when their vertices do.
+void lock(CollapseMesh& mesh, std::span<const std::uint32_t> corners, const DecimateOptions& options) {
+  if (options.locked_vertices.empty() && options.locked_edges.empty() && options.locked_faces.empty()) return;
+  std::vector<bool> locked(mesh.apex(), false);
+  for (const std::uint32_t v : options.locked_vertices) locked[v] = true;
+  for (const std::uint32_t h : options.locked_edges)
+    for (const std::uint32_t c : {h, h % 3 == 2 ? h - 2 : h + 1}) locked[corners[c]] = true;
+  for (const std::uint32_t f : options.locked_faces)
+    for (std::size_t i = 0; i < 3; ++i) locked[corners[3 * f + i]] = true;
+  for (std::uint32_t v = 0; v < mesh.apex(); ++v)
+    if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
 }
 
 template <class Point>
@@ -172,12 +202,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   leading = {};
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());  // it lies nowhere
-  if (!options.locked_vertices.empty()) {
-    std::vector<bool> locked(points.size(), false);
-    for (const std::uint32_t v : options.locked_vertices) locked[v] = true;
-    for (std::size_t v = 0; v < points.size(); ++v)
-      if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
-  }
+  lock(mesh, corners, options);
   if (options.boundary == DecimateBoundary::kKept)
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
       for (std::uint32_t i = 0; i < 3; ++i)
@@ -193,9 +218,9 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     weights.crease_cosine = static_cast<float>(std::cos(*options.crease_angle));
   }
   std::optional<Wedges> wedges;
-  if (!options.attributes.empty()) {
+  if (!options.attributes.empty() || !options.corner_groups.empty()) {
     wedges.emplace(mesh, points.size(),
-                   [&](std::uint32_t c, std::uint32_t d) { return same_values(options.attributes, c, d); });
+                   [&](std::uint32_t c, std::uint32_t d) { return same_values(options, c, d); });
     weights.seam = static_cast<float>(options.seam_weight);
     weights.wedges = &*wedges;
   }
@@ -204,6 +229,13 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   const double local_diagonal = frame.diagonal * frame.scale;
   if (wedges)
     attributes.emplace(mesh, points.size(), std::move(*wedges), options.attributes, corners, local_diagonal);
+
+  Pruned pruned;
+  if (options.prune_size || options.prune_relative_size)
+    pruned = prune_components(
+        mesh,
+        static_cast<float>(frame.scale * std::max(options.prune_size.value_or(0),
+                                                  options.prune_relative_size.value_or(0) * frame.diagonal)));
 
   Limits limits;
   limits.faces = options.target_faces.value_or(0);
@@ -220,10 +252,18 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (options.time_limit)
     limits.seconds =
         *options.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  DecimationState state{
-      mesh, limits, mesh.face_count(), used, options.keep_history, {}, attributes ? &*attributes : nullptr};
+  DecimationState state{mesh,
+                        limits,
+                        mesh.face_count() - pruned.faces,
+                        used - pruned.vertices,
+                        options.keep_history,
+                        {},
+                        attributes ? &*attributes : nullptr};
   VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
-  return gather(mesh, points, in_order, frame, outcome, attributes ? &*attributes : nullptr);
+  BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome, state.attributes);
+  result.pruned_components = pruned.components;
+  result.pruned_faces = pruned.faces;
+  return result;
 }
 
 template <class Point>

@@ -16,6 +16,9 @@ constexpr float kOfLength = 1e-7f;
 /// Least cosine between a new face and the normal along which all is seen: steeper ones have no reliable
 /// height.
 constexpr float kSteepest = 0.05f;
+/// Heights that are less than this share of the distance to the farthest neighbour may be rounding, and are
+/// 0.
+constexpr float kRounding = 1.0f / (1 << 21);
 constexpr float kAgainst = -0.5f;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
@@ -69,6 +72,9 @@ bool Hole::set(std::span<const Vector> ring, bool closed) {
     height_[i] = dot(up_direction_, ring_[i]);
     for (std::size_t j = i + 1; j < size_; ++j) up_[i][j] = dot(up_direction_, cross_[i][j]);
   }
+  float farthest2 = 0;
+  for (std::size_t i = 0; i < size_; ++i) farthest2 = std::max(farthest2, dot(ring_[i], ring_[i]));
+  rounding_ = kRounding * std::sqrt(farthest2);
   area_ = 0;
   std::fill_n(spoke_.begin(), size_, 0.0f);
   bool beyond = false;  // more than half a turn from the first
@@ -117,6 +123,7 @@ bool Hole::is_legal(std::size_t i, std::size_t l, std::size_t j, float cos_devia
 float Hole::error_at_v(std::size_t i, std::size_t l, std::size_t j) const {
   const float up = up_[i][l] + up_[l][j] - up_[i][j];
   const float z = (up_[l][j] * height_[i] - up_[i][j] * height_[l] + up_[i][l] * height_[j]) / up;
+  if (std::fabs(z) <= rounding_) return along0_;
   return std::max(along0_ + z * (2 * along1_ + z * along2_), 0.0f);
 }
 
@@ -130,7 +137,7 @@ float Hole::edge_error(std::size_t i, std::size_t j) const {
     if (!(whole > across)) return;
     const float u = as / whole, t = across / whole;
     const float dz = t * height_[s] - (height_[a] + u * (height_[b] - height_[a]));
-    error += spoke_[s] * (dz * dz);
+    error += std::fabs(dz) <= rounding_ ? 0.0f : spoke_[s] * (dz * dz);
   };
   if (!(across > 0)) return 0;
   if (inner) {

@@ -93,6 +93,7 @@ class Hole {
   Row height_, spoke_;                                  // along the normal; weight of the edge to v
   Vector up_direction_;
   float area_ = 0;                              // of the faces at v
+  float rounding_ = 0;                          // of heights
   float along0_ = 0, along1_ = 0, along2_ = 0;  // the quadric at height z: 0 + 2 z 1 + z² 2
   std::array<std::uint32_t, kMost> forbidden_{};
   std::array<Row, kMost> best_;
