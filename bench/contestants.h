@@ -24,7 +24,8 @@ inline const std::string kBuiltIns = "built-ins";
 /// What all contestants are given: triangles, and nothing built from them.
 struct Input {
   IndexedFaceSet mesh;
-  std::size_t decimation_target = 0;  ///< Faces.
+  IndexedFaceSet shuffled;     ///< The same with its points and faces in random order.
+  std::vector<double> ratios;  ///< Shares of the faces that decimation leaves.
 };
 
 /// A decimated surface.
@@ -32,6 +33,19 @@ struct Surface {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> corners;
 };
+
+/// One comparison of decimations.
+struct DecimationCase {
+  std::string step;
+  const IndexedFaceSet& mesh;  ///< Of the input.
+  bool shuffled = false;
+  std::size_t target = 0;  ///< Faces.
+};
+
+/// Each ratio, of the mesh as it is and shuffled.
+[[nodiscard]] std::vector<DecimationCase> decimation_cases(const Input& input);
+/// The same points and faces in an order that `seed` gives, the same everywhere.
+[[nodiscard]] IndexedFaceSet shuffled(const IndexedFaceSet& mesh, std::uint32_t seed);
 
 /// One way to do one step.
 struct Contestant {
@@ -90,7 +104,6 @@ inline const std::string kNeighbours = "neighbour lists";
 inline const std::string kNormals = "vertex normals";
 inline const std::string kSmoothing = "ten smoothing steps";
 inline const std::string kUpload = "upload";
-inline const std::string kDecimation = "decimation";
 }  // namespace step
 
 // Each adds its rows. `input` and `files` must outlive the programme.
@@ -102,6 +115,11 @@ Result<void> add_built_ins(Programme& programme, const Input& input, const std::
 void add_host_built_ins(Programme& programme, const Input& input);
 void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& files);
 void add_meshoptimizer(Programme& programme, const Input& input);
+void add_newer_meshoptimizer(Programme& programme, const Input& input);
+
+/// Adds one way to decimate, which fills the surface and returns the milliseconds that count.
+void add_decimation(Programme& programme, const DecimationCase& wanted, const std::string& name,
+                    std::function<Result<double>(Surface&)> run, bool slow = false);
 
 /// Milliseconds since it was made.
 class Stopwatch {

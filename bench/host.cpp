@@ -23,6 +23,14 @@ Result<double> timed(Work&& work) {
   return milliseconds;
 }
 
+struct Removal {
+  const char* name;
+  DecimateOperation operation;
+};
+constexpr Removal kRemovals[] = {{"edge collapse", DecimateOperation::kEdgeCollapse},
+                                 {"half-edge collapse", DecimateOperation::kHalfEdgeCollapse},
+                                 {"vertex removal", DecimateOperation::kVertexRemoval}};
+
 }  // namespace
 
 Result<void> add_host(Programme& programme, const Input& input) {
@@ -45,28 +53,22 @@ Result<void> add_host(Programme& programme, const Input& input) {
          options.iterations = kSmoothingSteps;
          return timed([&] { return laplacian_smoothing(*neighbours, input.mesh.points, options); });
        }});
-  for (const auto operation : {DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse}) {
-    const auto decimated = std::make_shared<Decimated>();
-    programme.contestants.push_back(
-        {step::kDecimation,
-         operation == DecimateOperation::kEdgeCollapse ? name + ", edge collapse"
-                                                       : name + ", half-edge collapse",
-         [&input, operation, decimated]() -> Result<double> {
-           DecimateOptions options;
-           options.operation = operation;
-           options.target_faces = input.decimation_target;
-           const Stopwatch watch;
-           auto result = decimate(TriangleSurface{input.mesh.points, input.mesh.corners}, options);
-           const double milliseconds = watch.milliseconds();
-           if (!result) return tl::unexpected<Error>(result.error());
-           *decimated = std::move(*result);
-           return milliseconds;
-         },
-         [decimated] {
-           const auto corners = decimated->mesh.origins();
-           return Surface{decimated->positions, {corners.begin(), corners.end()}};
-         }});
-  }
+  for (const DecimationCase& wanted : decimation_cases(input))
+    for (const Removal& removal : kRemovals)
+      add_decimation(programme, wanted, std::string("vkmesh, ") + removal.name,
+                     [&mesh = wanted.mesh, target = wanted.target,
+                      operation = removal.operation](Surface& surface) -> Result<double> {
+                       DecimateOptions options;
+                       options.operation = operation;
+                       options.target_faces = target;
+                       const Stopwatch watch;
+                       auto decimated = decimate(TriangleSurface{mesh.points, mesh.corners}, options);
+                       const double milliseconds = watch.milliseconds();
+                       if (!decimated) return tl::unexpected<Error>(decimated.error());
+                       const auto corners = decimated->mesh.origins();
+                       surface = {std::move(decimated->positions), {corners.begin(), corners.end()}};
+                       return milliseconds;
+                     });
   return {};
 }
 

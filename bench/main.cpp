@@ -4,15 +4,18 @@
 #include <fstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include <vkmesh/io/mesh_io.h>
 #include <vkmesh/surface_distance.h>
+#include <vkmesh/topology.h>
 #include <vkmesh/triangulate.h>
 
 #include "bench/contestants.h"
 #include "bench/machine.h"
+#include "bench/memory.h"
 #include "bench/report.h"
 
 namespace vkmesh::bench {
@@ -24,7 +27,7 @@ struct Options {
   std::size_t repetitions = 7;
   std::size_t slow_repetitions = 1;
   std::size_t samples = 200000;
-  double ratio = 0.1;
+  std::vector<double> ratios = {0.1, 0.01};
   std::string only;
   std::string json;
   std::string markdown;
@@ -40,8 +43,9 @@ Result<Input> read_input(const Options& options) {
   }
   if (input.mesh.face_count() == 0)
     return fail(ErrorCode::kUnsuitable, options.mesh + ": no faces to measure with");
-  input.decimation_target =
-      static_cast<std::size_t>(options.ratio * static_cast<double>(input.mesh.face_count()));
+  constexpr std::uint32_t kSeed = 6;
+  input.shuffled = shuffled(input.mesh, kSeed);
+  input.ratios = options.ratios;
   return input;
 }
 
@@ -64,8 +68,12 @@ Result<Programme> programme_for(const Options& options, const Input& input, cons
 #ifdef VKMESH_BENCH_MESHOPTIMIZER
   add_meshoptimizer(programme, input);
 #endif
+#ifdef VKMESH_BENCH_NEWER_MESHOPTIMIZER
+  add_newer_meshoptimizer(programme, input);
+#endif
   std::erase_if(programme.contestants, [&](const Contestant& contestant) {
-    return contestant.step.find(options.only) == std::string::npos;
+    return contestant.step.find(options.only) == std::string::npos ||
+           (contestant.slow && options.slow_repetitions == 0);
   });
   // Contestants of one step stand together, the steps in the order of their first.
   std::vector<std::string> steps;
@@ -80,6 +88,26 @@ Result<Programme> programme_for(const Options& options, const Input& input, cons
   return programme;
 }
 
+Result<DecimationQuality> quality_of(const Surface& surface, const IndexedFaceSet& original,
+                                     std::size_t samples) {
+  SurfaceDistanceOptions sampling;
+  sampling.samples = samples;
+  VKMESH_TRY(const SurfaceDistance distance, surface_distance({original.points, original.corners},
+                                                              {surface.points, surface.corners}, sampling));
+  const DistanceSummary both = distance.two_sided();
+  IndexedFaceSet faces;
+  faces.points = surface.points;
+  faces.corners = surface.corners;
+  VKMESH_TRY(const SurfaceTopology topology, surface_topology(faces));
+  DecimationQuality quality;
+  quality.faces = surface.corners.size() / 3;
+  quality.mean = both.mean / distance.diagonal;
+  quality.maximum = both.maximum / distance.diagonal;
+  quality.non_manifold_edges = topology.whole.non_manifold_edges + topology.whole.misoriented_edges;
+  quality.non_manifold_vertices = topology.whole.non_manifold_vertices;
+  return quality;
+}
+
 Result<Report> measure(const Options& options, const Input& input, const Programme& programme) {
   Report report;
   report.mesh = options.mesh.substr(options.mesh.find_last_of('/') + 1);
@@ -89,7 +117,7 @@ Result<Report> measure(const Options& options, const Input& input, const Program
   report.machine = describe_machine();
   report.libraries = programme.libraries;
   for (const Contestant& contestant : programme.contestants)
-    report.rows.push_back({contestant.step, contestant.name, {}, {}, contestant.bytes});
+    report.rows.push_back({contestant.step, contestant.name, {}, {}, {}, contestant.bytes});
 
   // Step by step; within a step A B A B, so that what disturbs the machine disturbs all alike.
   for (std::size_t begin = 0, end = 0; begin < programme.contestants.size(); begin = end) {
@@ -100,7 +128,10 @@ Result<Report> measure(const Options& options, const Input& input, const Program
         const Contestant& contestant = programme.contestants[i];
         if (contestant.slow && round >= options.slow_repetitions) continue;
         std::fprintf(stderr, "\r\033[K%s, %s: %zu", step.c_str(), contestant.name.c_str(), round + 1);
+        const MemoryWatch memory;
         VKMESH_TRY(const double milliseconds, contestant.run());
+        // Of the first run: later ones begin with the result of the one before.
+        if (contestant.surface && round == 0) report.rows[i].memory = memory.peak();
         report.rows[i].milliseconds.push_back(milliseconds);
       }
   }
@@ -109,13 +140,7 @@ Result<Report> measure(const Options& options, const Input& input, const Program
     if (!contestant.surface) continue;
     std::fprintf(stderr, "\r\033[Kerror of %s", contestant.name.c_str());
     const Surface surface = contestant.surface();
-    SurfaceDistanceOptions sampling;
-    sampling.samples = options.samples;
-    VKMESH_TRY(const SurfaceDistance distance, surface_distance({input.mesh.points, input.mesh.corners},
-                                                                {surface.points, surface.corners}, sampling));
-    const DistanceSummary both = distance.two_sided();
-    report.rows[i].error = DecimationError{surface.corners.size() / 3, both.mean / distance.diagonal,
-                                           both.maximum / distance.diagonal};
+    VKMESH_TRY(report.rows[i].quality, quality_of(surface, input.mesh, options.samples));
   }
   std::fprintf(stderr, "\r\033[K");
   return report;
@@ -152,13 +177,14 @@ int main(int argc, char** argv) {
   app.add_option("--repetitions", options.repetitions, "Runs of each row")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  app.add_option("--slow-repetitions", options.slow_repetitions, "Runs of a row that takes tens of seconds")
+  app.add_option("--slow-repetitions", options.slow_repetitions,
+                 "Runs of a row that takes tens of seconds; 0 leaves such rows out")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->check(CLI::Range(0, 1000));
   app.add_option("--samples", options.samples, "Samples each way for errors")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000000));
-  app.add_option("--ratio", options.ratio, "Share of the faces that decimation leaves")
+  app.add_option("--ratio", options.ratios, "Shares of the faces that decimation leaves")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--only", options.only, "Steps whose name holds this");

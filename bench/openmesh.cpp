@@ -46,7 +46,6 @@ void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& 
   const std::string name = "OpenMesh";
   programme.libraries.push_back({name, std::to_string(OM_GET_VER) + "." + std::to_string(OM_GET_MAJ)});
   const std::shared_ptr<Mesh> mesh = build(input.mesh);
-  const auto decimated = std::make_shared<Surface>();
 
   for (const ReadingFiles::File& file : files.all())
     programme.contestants.push_back(
@@ -86,22 +85,26 @@ void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& 
                                      smoother.smooth(kSmoothingSteps);
                                      return watch.milliseconds();
                                    }});
-  programme.contestants.push_back({step::kDecimation, name,
-                                   [&input, mesh, decimated]() -> Result<double> {
-                                     Mesh copy = *mesh;
-                                     const Stopwatch watch;
-                                     OpenMesh::Decimater::DecimaterT<Mesh> decimater(copy);
-                                     OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
-                                     decimater.add(quadric);
-                                     decimater.module(quadric).unset_max_err();
-                                     decimater.initialize();
-                                     decimater.decimate_to_faces(0, input.decimation_target);
-                                     copy.garbage_collection();
-                                     const double milliseconds = watch.milliseconds();
-                                     *decimated = surface_of(copy);
-                                     return milliseconds;
-                                   },
-                                   [decimated] { return *decimated; }, true});
+  for (const DecimationCase& wanted : decimation_cases(input)) {
+    if (wanted.shuffled) continue;  // its order is nothing to this, and a row takes long
+    add_decimation(
+        programme, wanted, name,
+        [mesh, target = wanted.target](Surface& surface) -> Result<double> {
+          Mesh copy = *mesh;
+          const Stopwatch watch;
+          OpenMesh::Decimater::DecimaterT<Mesh> decimater(copy);
+          OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
+          decimater.add(quadric);
+          decimater.module(quadric).unset_max_err();
+          decimater.initialize();
+          decimater.decimate_to_faces(0, target);
+          copy.garbage_collection();
+          const double milliseconds = watch.milliseconds();
+          surface = surface_of(copy);
+          return milliseconds;
+        },
+        true);
+  }
 }
 
 }  // namespace vkmesh::bench

@@ -14,29 +14,44 @@ std::string format(const char* pattern, Values... values) {
   return text.data();
 }
 
-using Cells = std::array<std::string, 8>;
+using Cells = std::vector<std::string>;
 
-const Cells kHeader = {"step", "by",         "median ms",  "min-max ms",
-                       "MB/s", "peer takes", "mean error", "max error"};
-
-std::vector<Cells> cells_of(const Report& report) {
-  std::vector<Cells> all;
+/// The header, and a row of cells for each row; columns that no row fills are left out.
+std::vector<Cells> table_of(const Report& report) {
+  std::vector<Cells> table = {{"step", "by", "median ms", "min-max ms", "MB/s", "of meshoptimizer",
+                               "peer takes", "mean error", "max error", "bytes a vertex",
+                               "non-manifold edges", "vertices"}};
   for (const Row& row : report.rows) {
     const auto [least, most] = std::minmax_element(row.milliseconds.begin(), row.milliseconds.end());
-    Cells cells;
+    Cells cells(table[0].size());
     cells[0] = row.step;
     cells[1] = row.name;
     cells[2] = format("%.1f", row.median());
     cells[3] = format("%.1f-%.1f (%zu)", *least, *most, row.milliseconds.size());
     if (const auto rate = row.megabytes_per_second()) cells[4] = format("%.0f", *rate);
-    if (const auto speedup = report.speedup(row)) cells[5] = format("%.2f x", *speedup);
-    if (row.error) {
-      cells[6] = format("%.3e", row.error->mean);
-      cells[7] = format("%.3e", row.error->maximum);
+    if (const auto share = report.share_of_meshoptimizer(row)) cells[5] = format("%.2f x", *share);
+    if (const auto speedup = report.speedup(row)) cells[6] = format("%.2f x", *speedup);
+    if (row.quality) {
+      cells[7] = format("%.3e", row.quality->mean);
+      cells[8] = format("%.3e", row.quality->maximum);
+      cells[10] = format("%zu", row.quality->non_manifold_edges);
+      cells[11] = format("%zu", row.quality->non_manifold_vertices);
     }
-    all.push_back(cells);
+    if (row.memory)
+      cells[9] = format("%.0f", static_cast<double>(*row.memory) / static_cast<double>(report.vertices));
+    table.push_back(std::move(cells));
   }
-  return all;
+  for (std::size_t i = table[0].size(); i-- > 0;) {
+    if (std::any_of(table.begin() + 1, table.end(), [&](const Cells& cells) { return !cells[i].empty(); }))
+      continue;
+    for (Cells& cells : table) cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return table;
+}
+
+bool has_step(const Report& report, const std::string& part) {
+  return std::any_of(report.rows.begin(), report.rows.end(),
+                     [&](const Row& row) { return row.step.find(part) != std::string::npos; });
 }
 
 std::vector<std::string> heading(const Report& report) {
@@ -49,11 +64,22 @@ std::vector<std::string> heading(const Report& report) {
   for (const Library& library : report.libraries)
     libraries += (libraries.empty() ? "" : "; ") + library.name + " " + library.version;
   lines.push_back(libraries);
-  lines.push_back(
-      format("errors: two-sided distance over %zu samples each way, over the bounding box's diagonal",
-             report.samples));
+  if (has_step(report, "decimation")) {
+    lines.push_back(format(
+        "decimation: arrays to arrays, one thread; errors are two-sided distances over %zu samples each "
+        "way, over the bounding box's diagonal",
+        report.samples));
+    lines.push_back(
+        "bytes a vertex: what the process held at most in the first run beyond the input, the result "
+        "included; "
+        "of meshoptimizer: of the time of the first one");
+    lines.push_back(
+        "non-manifold edges: of more than two faces, or of two that run along it the same way; vertices: of "
+        "several fans");
+  }
   lines.push_back("the peer is OpenMesh, or the same kernels with built-ins");
-  lines.push_back("reading: page cache warm; OpenMesh's reader also builds half-edges");
+  if (has_step(report, "read"))
+    lines.push_back("reading: page cache warm; OpenMesh's reader also builds half-edges");
   return lines;
 }
 
@@ -78,12 +104,18 @@ std::optional<double> Report::speedup(const Row& row) const {
   return std::nullopt;
 }
 
+std::optional<double> Report::share_of_meshoptimizer(const Row& row) const {
+  for (const Row& other : rows)
+    if (other.step == row.step && other.name.starts_with("meshoptimizer"))
+      return row.median() / other.median();
+  return std::nullopt;
+}
+
 std::string to_text(const Report& report) {
   std::string text;
   for (const std::string& line : heading(report)) text += line + "\n";
-  std::vector<Cells> table = cells_of(report);
-  table.insert(table.begin(), kHeader);
-  std::array<std::size_t, kHeader.size()> width{};
+  const std::vector<Cells> table = table_of(report);
+  std::vector<std::size_t> width(table[0].size());
   for (const Cells& cells : table)
     for (std::size_t i = 0; i < cells.size(); ++i) width[i] = std::max(width[i], cells[i].size());
   for (const Cells& cells : table) {
@@ -105,9 +137,12 @@ std::string to_markdown(const Report& report) {
     text += "\n";
   };
   text += "\n";
-  add_line(kHeader);
-  text += "|---|---|---:|---:|---:|---:|---:|---:|\n";
-  for (const Cells& cells : cells_of(report)) add_line(cells);
+  const std::vector<Cells> table = table_of(report);
+  add_line(table[0]);
+  text += "|---|---|";
+  for (std::size_t i = 2; i < table[0].size(); ++i) text += "---:|";
+  text += "\n";
+  for (std::size_t i = 1; i < table.size(); ++i) add_line(table[i]);
   return text;
 }
 
@@ -130,9 +165,14 @@ nlohmann::json to_json(const Report& report) {
     const auto speedup = report.speedup(row);
     entry["peer_takes_times"] = speedup ? nlohmann::json(*speedup) : nlohmann::json();
     if (const auto rate = row.megabytes_per_second()) entry["megabytes_per_second"] = *rate;
-    if (row.error)
-      entry["error"] = {
-          {"faces", row.error->faces}, {"mean", row.error->mean}, {"maximum", row.error->maximum}};
+    if (const auto share = report.share_of_meshoptimizer(row)) entry["of_meshoptimizer"] = *share;
+    if (row.memory) entry["memory_bytes"] = *row.memory;
+    if (row.quality)
+      entry["result"] = {{"faces", row.quality->faces},
+                         {"mean_error", row.quality->mean},
+                         {"maximum_error", row.quality->maximum},
+                         {"non_manifold_edges", row.quality->non_manifold_edges},
+                         {"non_manifold_vertices", row.quality->non_manifold_vertices}};
     json["rows"].push_back(entry);
   }
   return json;

@@ -13,18 +13,21 @@
 
 namespace vkmesh::bench {
 
-/// Two-sided distance from the original, as fractions of the diagonal of its bounding box.
-struct DecimationError {
+/// What a decimation has made.
+struct DecimationQuality {
   std::size_t faces = 0;
-  double mean = 0;
-  double maximum = 0;
+  /// Two-sided distance from the original, as fractions of the diagonal of its bounding box.
+  double mean = 0, maximum = 0;
+  std::size_t non_manifold_edges = 0;  ///< Of more than two faces, or of two that run the same way.
+  std::size_t non_manifold_vertices = 0;
 };
 
 struct Row {
   std::string step;
   std::string name;
-  std::vector<double> milliseconds;  ///< One for each repetition.
-  std::optional<DecimationError> error;
+  std::vector<double> milliseconds;   ///< One for each repetition.
+  std::optional<std::size_t> memory;  ///< Bytes allocated at most at once, the result among them.
+  std::optional<DecimationQuality> quality;
   std::size_t bytes = 0;  ///< Of the file that is read; 0 where none is.
 
   [[nodiscard]] double median() const;
@@ -44,6 +47,8 @@ struct Report {
   /// How many times as long as this row the peer, OpenMesh or built-ins, takes for the same step; unset
   /// without one.
   [[nodiscard]] std::optional<double> speedup(const Row& row) const;
+  /// The time of a decimation as a share of that of the first meshoptimizer for the same step.
+  [[nodiscard]] std::optional<double> share_of_meshoptimizer(const Row& row) const;
 };
 
 [[nodiscard]] std::string to_text(const Report& report);

@@ -169,8 +169,8 @@ class VertexRemovals {
                                        static_cast<double>(hole_.error()) / static_cast<double>(gone.weight));
 
     std::array<Hole::Triangle, Hole::kMost + 1> triangles;
-    std::size_t filled =
-        std::copy(hole_.triangles().begin(), hole_.triangles().end(), triangles.begin()) - triangles.begin();
+    std::size_t filled = hole_.triangles().size();
+    std::copy_n(hole_.triangles().begin(), filled, triangles.begin());
     if (!closed_)
       triangles[filled++] = {0, static_cast<std::uint8_t>(count_ - 2), static_cast<std::uint8_t>(count_ - 1)};
     const auto faces = mesh_.fill_hole(std::span(edges_).first(count_), std::span(triangles).first(filled));

@@ -1,0 +1,78 @@
+#include "bench/memory.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace vkmesh::bench {
+namespace {
+
+std::atomic<std::ptrdiff_t> held = 0, most = 0;
+
+constexpr std::size_t kDefault = __STDCPP_DEFAULT_NEW_ALIGNMENT__;
+
+void count(std::ptrdiff_t bytes) {
+  const std::ptrdiff_t now = held.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+  std::ptrdiff_t seen = most.load(std::memory_order_relaxed);
+  while (now > seen && !most.compare_exchange_weak(seen, now, std::memory_order_relaxed)) {
+  }
+}
+
+// Each block stands behind as many bytes as it is aligned to, the last of which tell its size.
+
+std::size_t* size_before(void* block) {
+  return static_cast<std::size_t*>(block) - 1;
+}
+
+void* allocate(std::size_t size, std::size_t alignment) {
+  const std::size_t room = (size + 2 * alignment - 1) / alignment * alignment;
+  void* const start = room < size ? nullptr : std::aligned_alloc(alignment, room);
+  if (start == nullptr) throw std::bad_alloc();
+  void* const block = static_cast<std::byte*>(start) + alignment;
+  *size_before(block) = size;
+  count(static_cast<std::ptrdiff_t>(size));
+  return block;
+}
+
+void release(void* block, std::size_t alignment) {
+  if (block == nullptr) return;
+  count(-static_cast<std::ptrdiff_t>(*size_before(block)));
+  std::free(static_cast<std::byte*>(block) - alignment);
+}
+
+std::size_t at_least_default(std::align_val_t alignment) {
+  return std::max(static_cast<std::size_t>(alignment), kDefault);
+}
+
+}  // namespace
+
+MemoryWatch::MemoryWatch() : before_(held) {
+  most = before_;
+}
+
+std::size_t MemoryWatch::peak() const {
+  return static_cast<std::size_t>(most - before_);
+}
+
+}  // namespace vkmesh::bench
+
+// The others, of arrays and without exceptions, end in these.
+void* operator new(std::size_t size) {
+  return vkmesh::bench::allocate(size, vkmesh::bench::kDefault);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return vkmesh::bench::allocate(size, vkmesh::bench::at_least_default(alignment));
+}
+void operator delete(void* block) noexcept {
+  vkmesh::bench::release(block, vkmesh::bench::kDefault);
+}
+void operator delete(void* block, std::align_val_t alignment) noexcept {
+  vkmesh::bench::release(block, vkmesh::bench::at_least_default(alignment));
+}
+void operator delete(void* block, std::size_t) noexcept {
+  operator delete(block);
+}
+void operator delete(void* block, std::size_t, std::align_val_t alignment) noexcept {
+  operator delete(block, alignment);
+}

@@ -1,0 +1,19 @@
+// How much memory is allocated: the program's operators new and delete count.
+#pragma once
+
+#include <cstddef>
+
+namespace vkmesh::bench {
+
+/// The most bytes that are allocated at once from its making on, beyond what was then. What is counted is
+/// what is asked for: the same on every machine. One at a time.
+class MemoryWatch {
+ public:
+  MemoryWatch();
+  [[nodiscard]] std::size_t peak() const;
+
+ private:
+  std::ptrdiff_t before_;
+};
+
+}  // namespace vkmesh::bench
