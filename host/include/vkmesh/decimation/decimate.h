@@ -214,10 +214,11 @@ using Decimated = BasicDecimated<Vec3>;
 ///
 /// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
 /// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
-/// O(n log n) for midpoints, else about O(n). Memory: about 140 bytes a vertex, 176 for midpoints, and 12
-/// more where the input's order has no locality and is replaced by one along a Morton curve; with attributes
-/// about 120 more, and 20 for each component. Isolated vertices are dropped. Errors: kUnsuitable unless
-/// triangles, finite and manifold; kUsage for options outside their range; kInterrupted; kOutOfMemory.
+/// O(n log n) for midpoints, else about O(n). Memory: less than 160 bytes a vertex with a result of a tenth,
+/// 36 more for midpoints, and 28 more where the input's order has no locality and is replaced by one along a
+/// Morton curve; with attributes about 120 more, and 20 for each component. Isolated vertices are dropped.
+/// Errors: kUnsuitable unless triangles, finite and manifold; kUsage for options outside their range;
+/// kInterrupted; kOutOfMemory.
 [[nodiscard]] Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                                          const DecimateOptions& options, const Progress& progress = {});
 [[nodiscard]] Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,
