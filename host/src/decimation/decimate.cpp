@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <vkmesh/decimation/decimate.h>
 
 #include "catching.h"
+#include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_order.h"
 #include "decimation/collapse_queues.h"
@@ -20,14 +22,25 @@
 #include "decimation/quadric_sums.h"
 #include "decimation/spatial_order.h"
 #include "decimation/vertex_removals.h"
+#include "decimation/wedges.h"
 
 namespace vkmesh {
 namespace {
 
 using namespace detail;
 
-template <class Placement, class Queue>
-constexpr auto kByEdgeCollapses = run_removals<EdgeCollapses<Placement, Queue>>;
+template <bool kAttributes>
+Result<Outcome> run_edge_collapses(DecimationState& state, const DecimateOptions& options, bool exact,
+                                   const Progress& progress) {
+  if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
+      options.placement == CollapsePlacement::kEndpoint)
+    return (exact ? run_removals<EdgeCollapses<EndPlacement, ExactQueue, kAttributes>>
+                  : run_removals<EdgeCollapses<EndPlacement, LazyQueue, kAttributes>>)(state, progress);
+  if (options.placement == CollapsePlacement::kMidpoint)
+    return run_removals<EdgeCollapses<MidpointPlacement, ExactQueue, kAttributes>>(state, progress);
+  return (exact ? run_removals<EdgeCollapses<OptimalPlacement, ExactQueue, kAttributes>>
+                : run_removals<EdgeCollapses<OptimalPlacement, LazyQueue, kAttributes>>)(state, progress);
+}
 
 Result<Outcome> run(DecimationState& state, const DecimateOptions& options, CollapseOrder order,
                     const Progress& progress) {
@@ -35,14 +48,35 @@ Result<Outcome> run(DecimationState& state, const DecimateOptions& options, Coll
   if (options.operation == DecimateOperation::kVertexRemoval)
     return (exact ? run_removals<VertexRemovals<ExactQueue>>
                   : run_removals<VertexRemovals<LazyQueue>>)(state, progress);
-  if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
-      options.placement == CollapsePlacement::kEndpoint)
-    return (exact ? kByEdgeCollapses<EndPlacement, ExactQueue>
-                  : kByEdgeCollapses<EndPlacement, LazyQueue>)(state, progress);
-  if (options.placement == CollapsePlacement::kMidpoint)
-    return kByEdgeCollapses<MidpointPlacement, ExactQueue>(state, progress);
-  return (exact ? kByEdgeCollapses<OptimalPlacement, ExactQueue>
-                : kByEdgeCollapses<OptimalPlacement, LazyQueue>)(state, progress);
+  return (state.attributes != nullptr ? run_edge_collapses<true>
+                                      : run_edge_collapses<false>)(state, options, exact, progress);
+}
+
+Result<void> check_attributes(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
+  const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
+  if (!(options.seam_weight >= 0 && std::isfinite(options.seam_weight)))
+    return usage("seam_weight must be at least 0 and finite");
+  if (!options.corner_groups.empty() && options.corner_groups.size() != corners)
+    return usage("corner_groups needs a number for each corner of the mesh");
+  const bool any = !options.attributes.empty() || !options.corner_groups.empty();
+  if (any && options.operation == DecimateOperation::kVertexRemoval)
+    return usage("vertex removal takes no attributes: collapse edges or half-edges");
+  for (const DecimateAttribute& a : options.attributes) {
+    if (!(a.weight >= 0 && std::isfinite(a.weight)))
+      return usage("the weight of an attribute must be at least 0 and finite");
+    if (a.components == 0 || (a.kind == AttributeKind::kNormal && a.components != 3))
+      return usage("an attribute needs at least one component, and normals three");
+    const std::size_t values = a.values.size() / a.components;
+    if (a.values.size() % a.components != 0 || (a.corners.empty() && values != vertices))
+      return usage("an attribute needs one value for each vertex, or the value of each corner");
+    if (!a.corners.empty() && a.corners.size() != corners)
+      return usage("an attribute needs a value for each corner of the mesh");
+    for (const std::uint32_t value : a.corners)
+      if (value >= values) return usage("a corner names no value of an attribute");
+    for (const float x : a.values)
+      if (!std::isfinite(x)) return fail(ErrorCode::kUnsuitable, "decimation needs finite attributes");
+  }
+  return {};
 }
 
 Result<void> check(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
@@ -69,7 +103,21 @@ Result<void> check(const DecimateOptions& options, std::size_t vertices, std::si
     if (f >= corners / 3) return usage("a locked face is not of the mesh");
   for (const auto& size : {options.prune_size, options.prune_relative_size})
     if (size && !(*size >= 0)) return usage("prune_size must be at least 0");
-  return {};
+  return check_attributes(options, vertices, corners);
+}
+
+/// Whether two corners at one vertex are of one group and have the same values of all attributes.
+bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t d) {
+  const auto& groups = options.corner_groups;
+  if (!groups.empty() && groups[c] != groups[d]) return false;
+  return std::all_of(options.attributes.begin(), options.attributes.end(), [&](const DecimateAttribute& a) {
+    if (a.corners.empty() || a.corners[c] == a.corners[d]) return true;
+    const auto value = [&](std::uint32_t corner) {
+      return a.values.subspan(std::size_t{a.corners[corner]} * a.components, a.components);
+    };
+    const auto one = value(c), other = value(d);
+    return std::equal(one.begin(), one.end(), other.begin());
+  });
 }
 
 /// Edges and faces stay when their vertices do.
@@ -169,7 +217,18 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     weights.crease = static_cast<float>(options.crease_weight);
     weights.crease_cosine = static_cast<float>(std::cos(*options.crease_angle));
   }
+  std::optional<Wedges> wedges;
+  if (!options.attributes.empty() || !options.corner_groups.empty()) {
+    wedges.emplace(mesh, points.size(),
+                   [&](std::uint32_t c, std::uint32_t d) { return same_values(options, c, d); });
+    weights.seam = static_cast<float>(options.seam_weight);
+    weights.wedges = &*wedges;
+  }
   sum_quadrics(mesh, weights);
+  std::optional<AttributeQuadrics> attributes;
+  const double local_diagonal = frame.diagonal * frame.scale;
+  if (wedges)
+    attributes.emplace(mesh, points.size(), std::move(*wedges), options.attributes, corners, local_diagonal);
 
   Pruned pruned;
   if (options.prune_size || options.prune_relative_size)
@@ -187,17 +246,21 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   limits.vertices = options.target_vertices.value_or(0);
   double bound = std::numeric_limits<double>::infinity();
   if (options.max_error) bound = *options.max_error * frame.scale;
-  if (options.max_relative_error)
-    bound = std::min(bound, *options.max_relative_error * frame.diagonal * frame.scale);
+  if (options.max_relative_error) bound = std::min(bound, *options.max_relative_error * local_diagonal);
   limits.error2 = bound * bound;
   limits.cos_deviation = static_cast<float>(std::cos(options.max_normal_deviation));
   if (options.time_limit)
     limits.seconds =
         *options.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  DecimationState state{
-      mesh, limits, mesh.face_count() - pruned.faces, used - pruned.vertices, options.keep_history, {}};
+  DecimationState state{mesh,
+                        limits,
+                        mesh.face_count() - pruned.faces,
+                        used - pruned.vertices,
+                        options.keep_history,
+                        {},
+                        attributes ? &*attributes : nullptr};
   VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
-  BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome);
+  BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome, state.attributes);
   result.pruned_components = pruned.components;
   result.pruned_faces = pruned.faces;
   return result;

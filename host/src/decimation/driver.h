@@ -16,7 +16,9 @@
 
 namespace vkmesh::detail {
 
-enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked };
+class AttributeQuadrics;
+
+enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked, kSeam };
 
 struct Limits {
   std::size_t faces = 0, vertices = 0;
@@ -34,9 +36,9 @@ struct Event {
 
 struct Outcome {
   DecimateStop stop = DecimateStop::kTargetReached;
-  double error2 = 0;
+  double error2 = 0, attribute_error2 = 0;  // the largest of a removal, mean squares in local units
   std::size_t collapses = 0;
-  std::array<std::size_t, 5> rejected{};  // by Legality
+  std::array<std::size_t, 6> rejected{};  // by Legality
   std::vector<Event> events;
 };
 
@@ -46,6 +48,7 @@ struct DecimationState {
   std::size_t faces, vertices;  // that are left
   bool keep_events;
   Outcome outcome;
+  AttributeQuadrics* attributes = nullptr;  // none
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };

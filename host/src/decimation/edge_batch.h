@@ -68,6 +68,11 @@ struct EdgeBatch {
 #endif
 };
 
+/// What a point at p, or at q, costs beside the quadrics.
+struct EndCosts {
+  alignas(64) std::array<EdgeBatch::Lanes, 2> at;
+};
+
 // Each fills end, x and cost of the lanes below `count`. The bytes are the same on every machine: no
 // operation of one lane depends on another.
 
@@ -78,5 +83,6 @@ void place_optimally(EdgeBatch& batch, std::size_t count);
 void place_in_middle(EdgeBatch& batch, std::size_t count);
 /// The end of less error; q when they are equal.
 void place_at_end(EdgeBatch& batch, std::size_t count);
+void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::size_t count);
 
 }  // namespace vkmesh::detail

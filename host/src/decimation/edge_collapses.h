@@ -13,6 +13,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/handles.h>
 
+#include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
@@ -27,16 +28,19 @@ enum class MayFall { kNone, kOfGone, kAll };
 
 struct OptimalPlacement {
   static constexpr MayFall kMayFall = MayFall::kNone;
+  static constexpr bool kAtEnds = false;
   static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
 };
 struct MidpointPlacement {
   static constexpr MayFall kMayFall = MayFall::kAll;
+  static constexpr bool kAtEnds = false;
   static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
 };
 /// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those
 /// that q had before only cost more.
 struct EndPlacement {
   static constexpr MayFall kMayFall = MayFall::kOfGone;
+  static constexpr bool kAtEnds = true;
   static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
 };
 
@@ -44,8 +48,9 @@ struct EndPlacement {
 ///
 /// Each edge stands in the queue at most once in earnest, by the half-edge that is tagged as queued; what the
 /// queue serves without the tag is stale. An edge whose collapse was found illegal is parked, and comes back
-/// when a vertex next to it has changed: nothing else can make it legal.
-template <class Placement, class Queue>
+/// when a vertex next to it has changed: nothing else can make it legal. With attributes costs rise and fall
+/// as they do without.
+template <class Placement, class Queue, bool kAttributes = false>
 class EdgeCollapses {
  public:
   explicit EdgeCollapses(DecimationState& state)
@@ -96,11 +101,9 @@ class EdgeCollapses {
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
         if (!mesh_.alive(h) || !mesh_.parked(h)) continue;
-        const CollapseVertex &p = vertices_[mesh_.origin(h)], &q = vertices_[mesh_.target(h)];
         evaluate(std::span(&h, 1));
-        if (static_cast<double>(batch_.cost[0]) >
-            state_.limits.error2 * (static_cast<double>(p.weight) + static_cast<double>(q.weight)))
-          return true;
+        const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
+        if (exceeds_error(p, q, geometric_cost(p, q, due_of(0, h)))) return true;
       }
     return false;
   }
@@ -112,6 +115,12 @@ class EdgeCollapses {
       const std::uint32_t h = edges[i];
       return std::pair(&vertices_[mesh_.origin(h)], &vertices_[mesh_.target(h)]);
     });
+    if constexpr (kAttributes && Placement::kAtEnds) {
+      state_.attributes->add_to_ends(batch_, edges);
+      place_at_end(batch_, state_.attributes->end_costs(), edges.size());
+      return;
+    }
+    if constexpr (kAttributes) state_.attributes->add_to(batch_, edges);
     Placement::place(batch_, edges.size());
   }
 
@@ -133,8 +142,7 @@ class EdgeCollapses {
     std::size_t due = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (queue_.is_due(ids[i], batch_.cost[i])) {
-        due_[due++] = {
-            ids[i], batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
+        due_[due++] = due_of(i, ids[i]);
       } else {
         queue_.insert(ids[i], batch_.cost[i]);
       }
@@ -151,6 +159,11 @@ class EdgeCollapses {
     std::int32_t end;
     std::array<float, 3> x;
   };
+
+  /// Of a lane of the batch.
+  [[nodiscard]] Due due_of(std::size_t i, std::uint32_t half_edge) const {
+    return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
+  }
 
   /// The neighbours of a vertex but one, counter-clockwise.
   using Ring = std::span<const std::uint32_t>;
@@ -228,13 +241,24 @@ class EdgeCollapses {
   [[nodiscard]] Legality judge(std::size_t i, std::uint32_t p, std::uint32_t q, Rings& rings) {
     const Due& due = due_[i];
     if (due.end == 3) return Legality::kLocked;
-    const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
-    if (static_cast<double>(due.cost) > state_.limits.error2 * weight) return Legality::kError;
+    if constexpr (kAttributes)
+      if (!state_.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
+    if (exceeds_error(p, q, geometric_cost(p, q, due))) return Legality::kError;
     rings = rings_of(i);
     if (!link_condition(rings, q)) return Legality::kLink;
     return turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, state_.limits.cos_deviation)
                ? Legality::kFoldOver
                : Legality::kLegal;
+  }
+
+  /// Of a collapse: its whole cost, but for what attributes have of it.
+  [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const Due& due) const {
+    if constexpr (kAttributes) return state_.attributes->geometric_cost(p, q, due.x);
+    return due.cost;
+  }
+  [[nodiscard]] bool exceeds_error(std::uint32_t p, std::uint32_t q, float cost) const {
+    const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
+    return static_cast<double>(cost) > state_.limits.error2 * weight;
   }
 
   /// The rings that were walked, unless a collapse of this batch was near; their vertices are the corners of
@@ -284,11 +308,16 @@ class EdgeCollapses {
       place = due.end == 1 ? vp.position : vq.position;
     }
     // Which of the two goes: what was chosen; else that of fewer neighbours, which is less work.
-    const bool keep_p =
+    bool keep_p =
         due.end == 0 ? rings.p.size() > rings.q.size() ||
                            (rings.p.size() == rings.q.size() && (vp.source & CollapseVertex::kSourceMask) <
                                                                     (vq.source & CollapseVertex::kSourceMask))
                      : due.end == 1;
+    const float geometric = geometric_cost(p, q, due);
+    if constexpr (kAttributes) {
+      const Wedges& wedges = state_.attributes->wedges();
+      if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
+    }
     if (keep_p) h = mesh_.twin(h);
     CollapseVertex &kept = keep_p ? vp : vq, &gone = keep_p ? vq : vp;
     const std::uint32_t q_now = keep_p ? p : q;
@@ -304,6 +333,13 @@ class EdgeCollapses {
     for (std::size_t k = 0; k < 3; ++k) kept.b[k] += gone.b[k];
     kept.c += gone.c;
     kept.weight += gone.weight;
+    if constexpr (kAttributes) {
+      state_.attributes->collapse(h, dg, dk);
+      const double rest = static_cast<double>(due.cost) - static_cast<double>(geometric);
+      if (const float weight = state_.attributes->weight(q_now); weight > 0)
+        state_.outcome.attribute_error2 =
+            std::max(state_.outcome.attribute_error2, rest / static_cast<double>(weight));
+    }
     if (place != kept.position) kept.source |= CollapseVertex::kMoved;
     kept.position = place;
     kept.source |= CollapseVertex::kTouched | (gone.source & CollapseVertex::kHasParked);
@@ -329,7 +365,7 @@ class EdgeCollapses {
     ++state_.outcome.collapses;
     if (kept.weight > 0)
       state_.outcome.error2 =
-          std::max(state_.outcome.error2, static_cast<double>(due.cost) / static_cast<double>(kept.weight));
+          std::max(state_.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
     join(to_a, from_a);
     join(to_b, from_b);
     if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);

@@ -12,6 +12,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/handles.h>
 
+#include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/driver.h"
 #include "decimation/frame.h"
@@ -20,17 +21,21 @@ namespace vkmesh::detail {
 
 template <class Point>
 BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> points, bool in_order,
-                             const Frame& frame, const Outcome& outcome) {
+                             const Frame& frame, const Outcome& outcome,
+                             const AttributeQuadrics* attributes) {
   BasicDecimated<Point> result;
   result.stop = outcome.stop;
   result.collapses = outcome.collapses;
   result.error = std::sqrt(outcome.error2) / frame.scale;
   result.relative_error = frame.diagonal > 0 ? result.error / frame.diagonal : 0;
+  if (frame.diagonal > 0)
+    result.attribute_error = std::sqrt(outcome.attribute_error2) / (frame.diagonal * frame.scale);
   const auto rejected = [&](Legality why) { return outcome.rejected[static_cast<std::size_t>(why)]; };
   result.rejected_link = rejected(Legality::kLink);
   result.rejected_fold_over = rejected(Legality::kFoldOver);
   result.rejected_error = rejected(Legality::kError);
   result.rejected_locked = rejected(Legality::kLocked);
+  result.rejected_seam = rejected(Legality::kSeam);
   result.history.reserve(outcome.events.size());
   for (const Event& e : outcome.events)
     result.history.push_back(
@@ -93,6 +98,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     new_face[f] = static_cast<std::uint32_t>(result.source_face.size());
     result.source_face.push_back(f);
   }
+  if (attributes != nullptr) result.attributes = attributes->gather(alive_faces, new_face);
   std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size()),
       leading(result.positions.size(), kInvalid);
   for (const std::uint32_t f : alive_faces) {

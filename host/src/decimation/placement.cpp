@@ -119,12 +119,18 @@ VKMESH_CLONES void place_in_middle(EdgeBatch& batch, std::size_t count) {
     }
 }
 
-VKMESH_CLONES void place_at_end(EdgeBatch& batch, std::size_t count) {
+namespace {
+
+// `extra(cost, end, lane)`: the cost of a point at p (0) or q (1), and what comes to it.
+template <class Extra>
+[[gnu::always_inline]] inline void place_at_cheaper_end(EdgeBatch& batch, std::size_t count,
+                                                        const Extra& extra) {
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
       const Lane lane = lane_of(batch, i);
       const float dx = lane.d[0], dy = lane.d[1], dz = lane.d[2];
-      const float at_p = both(lane, 0.0f, 0.0f, 0.0f), at_q = both(lane, dx, dy, dz);
+      const float at_p = extra(both(lane, 0.0f, 0.0f, 0.0f), 0, i);
+      const float at_q = extra(both(lane, dx, dy, dz), 1, i);
       const bool q = lane.end == 0 ? at_q <= at_p : lane.end != 1;
       batch.x[0][i] = q ? dx : 0.0f;
       batch.x[1][i] = q ? dy : 0.0f;
@@ -132,6 +138,20 @@ VKMESH_CLONES void place_at_end(EdgeBatch& batch, std::size_t count) {
       batch.end[i] = lane.end == 3 ? 3 : q ? 2 : 1;
       batch.cost[i] = q ? at_q : at_p;
     }
+}
+
+}  // namespace
+
+VKMESH_CLONES void place_at_end(EdgeBatch& batch, std::size_t count) {
+  place_at_cheaper_end(
+      batch, count, [](float cost, std::size_t, std::size_t) __attribute__((always_inline)) { return cost; });
+}
+
+VKMESH_CLONES void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::size_t count) {
+  place_at_cheaper_end(
+      batch, count, [&](float cost, std::size_t end, std::size_t i) __attribute__((always_inline)) {
+        return cost + extra.at[end][i];
+      });
 }
 
 }  // namespace vkmesh::detail

@@ -38,10 +38,12 @@ AreaVector area_of(const CollapseMesh& mesh, const CollapseMesh::Face& face) {
 float constraint(const CollapseMesh& mesh, const CollapseMesh::Face& face, std::uint32_t i,
                  const std::array<float, 3>& n, const ConstraintWeights& weights) {
   if (mesh.is_ghost(face.twin[i])) return weights.boundary;
-  if (!(weights.crease > 0)) return 0.0f;
+  const float seam =
+      weights.seam > 0 && weights.wedges->is_seam(mesh, mesh.twin(face.twin[i])) ? weights.seam : 0.0f;
+  if (!(weights.crease > 0)) return seam;
   const AreaVector other = area_of(mesh, mesh.face(face.twin[i]));
   const float along = n[0] * other.twice[0] + n[1] * other.twice[1] + n[2] * other.twice[2];
-  return along < weights.crease_cosine * other.length ? weights.crease : 0.0f;
+  return along < weights.crease_cosine * other.length ? std::max(seam, weights.crease) : seam;
 }
 
 }  // namespace
@@ -58,7 +60,7 @@ void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights) {
     std::array<float, 3> n = area.twice;
     for (float& x : n) x /= area.length;
     for (const std::uint32_t v : face.origin) add_plane(mesh.vertices[v], n, 0.5f * area.length);
-    if (!(weights.boundary > 0 || weights.crease > 0)) continue;
+    if (!(weights.boundary > 0 || weights.crease > 0 || weights.seam > 0)) continue;
     for (std::uint32_t i = 0; i < 3; ++i) {
       const float weight = constraint(mesh, face, i, n, weights);
       if (!(weight > 0)) continue;

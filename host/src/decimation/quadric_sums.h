@@ -2,6 +2,7 @@
 #pragma once
 
 #include "decimation/collapse_mesh.h"
+#include "decimation/wedges.h"
 
 namespace vkmesh::detail {
 
@@ -11,6 +12,8 @@ struct ConstraintWeights {
   float boundary = 0.0f;  ///< On boundary edges.
   float crease = 0.0f;    ///< On edges between faces whose normals are farther apart than crease_cosine.
   float crease_cosine = -1.0f;
+  float seam = 0.0f;  ///< On the seams of `wedges`.
+  const Wedges* wedges = nullptr;
 };
 
 /// Adds to the quadrics of the vertices, which must be zero, the planes of their faces, weighted by area, and

@@ -31,6 +31,25 @@ enum class DecimateBoundary {
   kFree      ///< The boundary may shrink.
 };
 
+enum class AttributeKind {
+  kPlain,  ///< Any numbers: texture coordinates, colours, …
+  kNormal  ///< Three components, of unit length: made so again where they were mixed.
+};
+
+/// Values of the surface beside its place, borrowed. Linear within each face; they may differ on the two
+/// sides of an edge, which then is a seam.
+struct DecimateAttribute {
+  std::uint32_t components = 1;   ///< Of a value.
+  std::span<const float> values;  ///< One value after another.
+  /// The value of each corner of the mesh, in the order of its half-edges. Empty: vertex v has value v.
+  std::span<const std::uint32_t> corners;
+  /// What it counts in the error. At 1, a change over the whole range of the values (the largest of the
+  /// components' ranges; for normals, by the length of one) counts as a move by the diagonal of the bounding
+  /// box. 0: it is carried along, and its seams are kept. Default 0.01.
+  double weight = 0.01;
+  AttributeKind kind = AttributeKind::kPlain;
+};
+
 struct DecimateOptions {
   /// Default edge collapse.
   DecimateOperation operation = DecimateOperation::kEdgeCollapse;
@@ -67,6 +86,14 @@ struct DecimateOptions {
   /// boundary, one for each of their faces. Default none.
   std::optional<double> crease_angle;
   double crease_weight = 10.0;  ///< Of these planes. Default 10.
+  /// Attributes, for edge and half-edge collapse. See `decimate`.
+  std::vector<DecimateAttribute> attributes;
+  /// A number for each corner of the mesh, borrowed: corners at one vertex whose numbers differ are parted by
+  /// seams, as those whose attributes differ are (materials, for example). Default none.
+  std::span<const std::uint32_t> corner_groups;
+  /// Constraint planes stand on seams as on the boundary, one for each face; this is their weight.
+  /// Default 10.
+  double seam_weight = 10.0;
   /// Vertices that are neither moved nor removed, in any order. A collapse may end in one.
   std::vector<std::uint32_t> locked_vertices;
   /// Edges that stay as they are, ends and all: half-edges, either of the two, where 3 f + i goes from corner
@@ -103,6 +130,17 @@ struct Collapse {
   std::array<std::uint32_t, 2> faces{kInvalid, kInvalid};
 };
 
+/// Attributes of what is left, as a vertex buffer has them: the corners of a vertex that share all values and
+/// hang together are one element, a wedge.
+struct DecimatedAttributes {
+  std::vector<std::uint32_t> corners;  ///< The wedge of each corner of the mesh, numbered as they come.
+  /// For each attribute its values, one for each wedge. None lies outside the range of the input's.
+  std::vector<std::vector<float>> values;
+  /// For each wedge a corner of the input that had it. Where the vertex was not moved it has its values, bit
+  /// by bit.
+  std::vector<std::uint32_t> source_corner;
+};
+
 template <class Point>
 struct BasicDecimated {
   HalfEdgeMesh mesh;
@@ -116,12 +154,16 @@ struct BasicDecimated {
   /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones and
   /// those of pruned components, which are dropped.
   std::vector<std::uint32_t> vertex_map;
+  DecimatedAttributes attributes;  ///< Empty without attributes and corner_groups.
   /// Every collapse in order, if asked for.
   std::vector<Collapse<Point>> history;
   DecimateStop stop = DecimateStop::kTargetReached;
   /// The largest error of a collapse that was done, in units of the positions (see max_error) and as a share
   /// of the bounding box's diagonal.
   double error = 0, relative_error = 0;
+  /// The largest attribute error of a collapse that was done: the root of the area-weighted mean of the
+  /// squared changes of the attributes, as shares of their ranges, times their weights.
+  double attribute_error = 0;
   std::size_t collapses = 0;
   /// What prune_size took away.
   std::size_t pruned_components = 0, pruned_faces = 0;
@@ -130,6 +172,7 @@ struct BasicDecimated {
   std::size_t rejected_fold_over = 0;  ///< A face would fold over.
   std::size_t rejected_error = 0;      ///< Its error is too large.
   std::size_t rejected_locked = 0;     ///< Both ends are locked.
+  std::size_t rejected_seam = 0;       ///< It would close, part or join seams.
 };
 
 using Decimated = BasicDecimated<Vec3>;
@@ -159,12 +202,22 @@ using Decimated = BasicDecimated<Vec3>;
 ///   about the kept vertex come to stand against each other by more than 120 degrees, or more than some did
 ///   before.
 ///
+/// Attributes: H. Hoppe, "New quadric metric for simplifying meshes with appearance attributes" (1999). The
+/// error of a collapse is that of the planes plus, for each attribute, weight² times the squared deviation,
+/// over the faces, of its values from those that the new point gets, which are the best for its place; what
+/// is said above of the order holds. max_error and `error` are of the planes alone. A vertex that does not
+/// move keeps its values. An edge is a seam where values differ between its two sides at one of its ends, and
+/// all attributes have the same seams. Both sides of a seam share their points, so none opens; a collapse
+/// along a seam joins both sides at once; and no collapse is legal that changes which curves the seams and
+/// the boundary form, or leaves a chart between them without a face. Vertices where seams end, meet or reach
+/// the boundary are locked.
+///
 /// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
 /// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
 /// O(n log n) for midpoints, else about O(n). Memory: about 140 bytes a vertex, 176 for midpoints, and 12
-/// more where the input's order has no locality and is replaced by one along a Morton curve. Isolated
-/// vertices are dropped. Errors: kUnsuitable unless triangles, finite and manifold; kUsage for options
-/// outside their range; kInterrupted; kOutOfMemory.
+/// more where the input's order has no locality and is replaced by one along a Morton curve; with attributes
+/// about 120 more, and 20 for each component. Isolated vertices are dropped. Errors: kUnsuitable unless
+/// triangles, finite and manifold; kUsage for options outside their range; kInterrupted; kOutOfMemory.
 [[nodiscard]] Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                                          const DecimateOptions& options, const Progress& progress = {});
 [[nodiscard]] Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,

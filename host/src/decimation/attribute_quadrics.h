@@ -1,0 +1,98 @@
+// What attributes add to the quadric error of edge collapses.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <vkmesh/decimation/decimate.h>
+
+#include "decimation/collapse_mesh.h"
+#include "decimation/edge_batch.h"
+#include "decimation/wedges.h"
+
+namespace vkmesh::detail {
+
+/// Quadrics over place and attributes (H. Hoppe, "New quadric metric for simplifying meshes with appearance
+/// attributes", 1999), one for each wedge. On a face of area w an attribute is a linear function of the
+/// place; the quadric of a wedge is the sum of w cost (function(x) - s)² over its faces and attributes, and
+/// for each x the best s is the mean of the functions there. So a wedge is kept as this mean function and the
+/// weight of its faces, and what is left for the best s, a quadric in x alone, is added to the geometric one
+/// of its vertex. Two wedges that become one have the weighted mean function, and the square of their
+/// difference, with the weight w v / (w + v), is added to what is left (T. Chan, G. Golub, R. LeVeque,
+/// "Updating formulae and a pairwise algorithm for computing sample variances", 1979): all terms are
+/// positive, and floats are enough.
+///
+/// A vertex that does not move keeps the values that it has in the input.
+class AttributeQuadrics {
+ public:
+  /// `corners`: vertices of the input; `diagonal`: of the box, local. The vertices have their geometric
+  /// quadrics, to which those of the attributes are added. O(n · components).
+  AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_count, Wedges wedges,
+                    std::span<const DecimateAttribute> attributes, std::span<const std::uint32_t> corners,
+                    double diagonal);
+
+  [[nodiscard]] const Wedges& wedges() const { return wedges_; }
+
+  /// Adds what joining the wedges of these edges costs to a batch that holds them, for a point anywhere or,
+  /// where an end is locked, there. A vertex of a seam is not to become part of one that is on none.
+  void add_to(EdgeBatch& batch, std::span<const std::uint32_t> edges) const;
+  /// The same for a point at one of the ends.
+  void add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges);
+  [[nodiscard]] const EndCosts& end_costs() const { return end_costs_; }
+
+  /// Of the geometric quadrics alone, with the point at p + x.
+  [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const std::array<float, 3>& x) const;
+  /// Of the faces of all wedges of the vertex: the sum.
+  [[nodiscard]] float weight(std::uint32_t v) const;
+
+  /// The collapse of `gone` into `kept` along h = gone → kept, to be told after both vertices' quadrics were
+  /// moved to the new place, by `move_gone` and `move_kept`, and added, and before the mesh collapses.
+  void collapse(std::uint32_t h, const std::array<float, 3>& move_gone,
+                const std::array<float, 3>& move_kept);
+
+  /// Of the faces that are left, face f of which is face new_face[its source] of the result.
+  [[nodiscard]] DecimatedAttributes gather(std::span<const std::uint32_t> faces,
+                                           std::span<const std::uint32_t> new_face) const;
+
+ private:
+  void add_face(std::uint32_t f);
+  /// Adds that which parts the functions of two wedges, with the place expressed relative to p.
+  void add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q, const std::array<float, 3>& d,
+                      std::array<float, 6>& a, std::array<float, 3>& b, float& c) const;
+  /// Sum of cost (function(x) - value)², times the weight of `wedge`; the value of `at`.
+  [[nodiscard]] float deviation(std::uint32_t wedge, const std::array<float, 3>& x, std::uint32_t at) const;
+  /// What all wedges of a vertex that stays where it is cost beside what is left of their quadrics.
+  [[nodiscard]] float deviation(std::uint32_t v) const;
+  [[nodiscard]] double value_of(std::size_t attribute, std::uint32_t corner, std::size_t component) const;
+  void move(std::uint32_t wedge, const std::array<float, 3>& by);
+  [[nodiscard]] std::array<float, 3> between(std::uint32_t p, std::uint32_t q) const;
+
+  /// A linear function: its gradient, and its value at the vertex.
+  struct Function {
+    std::array<float, 3> gradient;
+    float value;
+  };
+  /// Values are local: (value - middle) / range, and a square of them costs `cost`.
+  struct Component {
+    std::size_t attribute, index;
+    double middle, range;
+    float cost, low, high;
+  };
+
+  CollapseMesh& mesh_;
+  Wedges wedges_;
+  std::span<const DecimateAttribute> attributes_;
+  std::span<const std::uint32_t> corners_;
+  std::vector<Component> components_;
+  std::vector<float> weight_;          // by wedge
+  std::vector<Function> function_;     // by wedge and component
+  std::vector<float> value_;           // the same: the input's
+  std::vector<CollapseVertex> plain_;  // the vertices with their geometric quadrics alone
+  std::vector<float> deviation_;       // by vertex
+  EndCosts end_costs_;
+};
+
+}  // namespace vkmesh::detail
