@@ -45,15 +45,19 @@ Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
   return run(half_edges(mesh), mesh.points, options);
 }
 
-/// Edge collapses have tests of their own in decimate_edge_test.cpp.
-DecimateOptions half_edge_collapse() {
+/// Those that move no point. Edge collapses have tests of their own in decimate_edge_test.cpp.
+DecimateOperation any_operation() {
+  return GENERATE(DecimateOperation::kHalfEdgeCollapse, DecimateOperation::kVertexRemoval);
+}
+
+DecimateOptions options_of(DecimateOperation operation) {
   DecimateOptions options;
-  options.operation = DecimateOperation::kHalfEdgeCollapse;
+  options.operation = operation;
   return options;
 }
 
-DecimateOptions to_faces(std::size_t faces) {
-  DecimateOptions options = half_edge_collapse();
+DecimateOptions to_faces(DecimateOperation operation, std::size_t faces) {
+  DecimateOptions options = options_of(operation);
   options.target_faces = faces;
   return options;
 }
@@ -158,12 +162,13 @@ IndexedFaceSet manifold_part(const IndexedFaceSet& mesh) {
 }  // namespace
 
 TEST_CASE("decimation: every single collapse keeps the topology and the structure", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   for (const auto& [name, shape] : small_shapes())
     for (std::uint32_t seed = 0; seed < 4; ++seed) {
       IndexedFaceSet mesh = shape;
       if (seed > 0) test::jitter(mesh, 0.15f * static_cast<float>(seed), seed);
       const HalfEdgeMesh input = half_edges(mesh);
-      DecimateOptions options = half_edge_collapse();
+      DecimateOptions options = options_of(operation);
       // 0 lets boundaries shrink, and a wide angle nearly everything: the link condition alone must hold.
       options.boundary_weight = seed % 2 == 0 ? 100.0 : 0.0;
       options.max_normal_deviation = seed < 2 ? 1.3 : 3.1;
@@ -196,45 +201,48 @@ TEST_CASE("decimation: every single collapse keeps the topology and the structur
 }
 
 TEST_CASE("decimation: a collapse follows from the last one done, whatever the target", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   // The run to n - 1 faces is the run to n and one collapse more: its vertices are a subset.
   IndexedFaceSet mesh = test::icosphere(2);
   test::jitter(mesh, 0.05f, 7);
-  std::vector<std::uint32_t> before = run(mesh, to_faces(mesh.face_count())).source_vertex;
+  std::vector<std::uint32_t> before = run(mesh, to_faces(operation, mesh.face_count())).source_vertex;
   for (std::size_t target = mesh.face_count(); target > 4; target -= 2) {
-    const std::vector<std::uint32_t> now = run(mesh, to_faces(target)).source_vertex;
+    const std::vector<std::uint32_t> now = run(mesh, to_faces(operation, target)).source_vertex;
     CHECK(std::includes(before.begin(), before.end(), now.begin(), now.end()));
     before = now;
   }
 }
 
 TEST_CASE("decimation: nothing smaller than a tetrahedron, a triangle or a pillow", "[decimate]") {
-  const Decimated tetrahedron = run(test::tetrahedron(), to_faces(0));
+  const DecimateOperation operation = any_operation();
+  const Decimated tetrahedron = run(test::tetrahedron(), to_faces(operation, 0));
   CHECK(tetrahedron.stop == DecimateStop::kNoLegalCollapse);
   CHECK(tetrahedron.collapses == 0);
-  CHECK(tetrahedron.rejected_link == 6);
+  CHECK(tetrahedron.rejected_link == (operation == DecimateOperation::kVertexRemoval ? 4u : 6u));
   CHECK(tetrahedron.mesh.face_count() == 4);
 
   IndexedFaceSet triangle;
   triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   triangle.corners = {0, 1, 2};
-  const Decimated lone = run(triangle, to_faces(0));
+  const Decimated lone = run(triangle, to_faces(operation, 0));
   CHECK(lone.stop == DecimateStop::kNoLegalCollapse);
   CHECK(lone.mesh.face_count() == 1);
   CHECK(lone.rejected_link == 3);
 
   IndexedFaceSet pillow = triangle;
   pillow.corners = {0, 1, 2, 0, 2, 1};
-  CHECK(run(pillow, to_faces(0)).mesh.face_count() == 2);
+  CHECK(run(pillow, to_faces(operation, 0)).mesh.face_count() == 2);
 
-  const Decimated empty = run(IndexedFaceSet{}, to_faces(0));
+  const Decimated empty = run(IndexedFaceSet{}, to_faces(operation, 0));
   CHECK(empty.mesh.face_count() == 0);
   CHECK(empty.stop == DecimateStop::kTargetReached);
 }
 
 TEST_CASE("decimation: a sphere goes down to few faces without a fold", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   const IndexedFaceSet mesh = test::icosphere(4);
   for (const std::size_t target : {2560u, 512u, 51u}) {
-    const Decimated result = run(mesh, to_faces(target));
+    const Decimated result = run(mesh, to_faces(operation, target));
     CHECK(result.stop == DecimateStop::kTargetReached);
     for (std::uint32_t f = 0; f < result.mesh.face_count(); ++f)
       CHECK(dot(normal_of(result.mesh, result.positions, f),
@@ -243,6 +251,7 @@ TEST_CASE("decimation: a sphere goes down to few faces without a fold", "[decima
 }
 
 TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
     // Jitter in the plane, away from the boundary, must not matter.
     IndexedFaceSet mesh = test::grid(12, 9);
@@ -252,7 +261,7 @@ TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decima
       Vec3& p = mesh.points[i];
       if (p.x > 0 && p.x < 12 && p.y > 0 && p.y < 9) p = {moved.points[i].x, moved.points[i].y, 0};
     }
-    DecimateOptions options = half_edge_collapse();
+    DecimateOptions options = options_of(operation);
     options.max_error = 1e-9;
     const Decimated result = run(mesh, options);
     // In the plane z = 0 every product with a normal (0, 0, 1) is exact, and so are boundary planes along the
@@ -272,6 +281,7 @@ TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decima
 }
 
 TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   for (std::uint32_t seed = 0; seed <= 5; ++seed) {
     IndexedFaceSet mesh = test::grid(15, 15);
     if (seed > 0) test::jitter(mesh, 0.24f, seed);  // else many points lie on lines
@@ -279,7 +289,7 @@ TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage"
     const HalfEdgeMesh input = half_edges(mesh);
     for (const double weight : {100.0, 0.0})
       for (const std::size_t target : {400u, 200u, 100u, 40u, 10u, 1u}) {
-        DecimateOptions options = to_faces(target);
+        DecimateOptions options = to_faces(operation, target);
         options.boundary_weight = weight;
         const Decimated result = run(input, mesh.points, options);
         for (std::uint32_t f = 0; f < result.mesh.face_count(); ++f)
@@ -289,6 +299,7 @@ TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage"
 }
 
 TEST_CASE("decimation: a finely cut cube is twelve triangles, at any place", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   for (const float shift : {0.0f, 1000.0f, 1.0e6f}) {
     // Six grids welded along their edges; 1/8 is exact at 1e6 in float.
     constexpr int kCuts = 8;
@@ -319,7 +330,7 @@ TEST_CASE("decimation: a finely cut cube is twelve triangles, at any place", "[d
                                 {corner[0], corner[1], corner[2], corner[0], corner[2], corner[3]});
           }
     REQUIRE(mesh.face_count() == 6 * 2 * kCuts * kCuts);
-    const Decimated result = run(mesh, to_faces(12));
+    const Decimated result = run(mesh, to_faces(operation, 12));
     CHECK(result.stop == DecimateStop::kTargetReached);
     CHECK(result.mesh.face_count() == 12);
     CHECK(result.positions.size() == 8);
@@ -335,23 +346,25 @@ TEST_CASE("decimation: a finely cut cube is twelve triangles, at any place", "[d
 }
 
 TEST_CASE("decimation: a flat sheet that stands askew has an error of rounding only", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   // Points on z = x / 2 + y / 4 are exact in float, the unit normal in double is not: |n - n'| < 2^-52, over
   // a length of 15 that is an error below 15 · 2^-52 in distance, but the sum of squares is formed from terms
   // of about 15² · 2^-52: its root is what remains, below 15 · 2^-26 · 2 = 4.5e-7.
   IndexedFaceSet mesh = test::grid(12, 9);
   for (Vec3& p : mesh.points) p.z = p.x / 2 + p.y / 4;
-  DecimateOptions options = half_edge_collapse();
+  DecimateOptions options = options_of(operation);
   options.max_error = 4.5e-7;
   const Decimated result = run(mesh, options);
   CHECK(result.mesh.face_count() == 2);
 }
 
 TEST_CASE("decimation: the error bound holds, and a larger one leaves fewer faces", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   IndexedFaceSet mesh = test::torus(48, 24);
   test::jitter(mesh, 0.01f, 3);
   std::size_t faces = mesh.face_count() + 1;
   for (const double bound : {0.0005, 0.003, 0.01, 0.05}) {
-    DecimateOptions options = half_edge_collapse();
+    DecimateOptions options = options_of(operation);
     options.max_error = bound;
     const Decimated result = run(mesh, options);
     CHECK(result.stop == DecimateStop::kErrorBound);
@@ -365,13 +378,15 @@ TEST_CASE("decimation: the error bound holds, and a larger one leaves fewer face
 }
 
 TEST_CASE("decimation: the error is the root of the mean squared distance from the planes", "[decimate]") {
-  // A pyramid of height e on the unit square's centre, its base fixed by a border of weight: the centre falls
-  // to a corner, and lies there on two of its four planes.
+  const DecimateOperation operation = any_operation();
+  // A pyramid of height e on the unit square's centre, its base fixed by a border of weight. When the centre
+  // falls to a corner, it lies there on two of its four planes; when it is removed, a diagonal passes below
+  // it.
   constexpr double kHeight = 0.125;
   IndexedFaceSet mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, static_cast<float>(kHeight)}};
   mesh.corners = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
-  DecimateOptions options = to_faces(2);
+  DecimateOptions options = to_faces(operation, 2);
   options.boundary_weight = 1;
   const Decimated result = run(mesh, options);
   REQUIRE(result.collapses == 1);
@@ -379,6 +394,10 @@ TEST_CASE("decimation: the error is the root of the mean squared distance from t
   // Plane over the side x = 1: normal (-2e, 0, -1) / sqrt(1 + 4e²); the corner (0, 0, 0) is 2e / sqrt(1 +
   // 4e²) away, and so it is from the plane over y = 1. All four areas are equal; the corner has its own two
   // faces besides, and the planes that stand on its two sides, of weight 1, all at distance 0.
+  if (operation == DecimateOperation::kVertexRemoval) {
+    CHECK(result.error == Approx(kHeight / std::sqrt(1 + 4 * kHeight * kHeight)).epsilon(16.0 / (1 << 24)));
+    return;
+  }
   const double distance2 = 4 * kHeight * kHeight / (1 + 4 * kHeight * kHeight);
   const double area = 0.5 * std::sqrt(0.25 + kHeight * kHeight);
   // Some sixteen operations in float.
@@ -386,6 +405,7 @@ TEST_CASE("decimation: the error is the root of the mean squared distance from t
 }
 
 TEST_CASE("decimation: boundaries stay with weight and shrink without", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   // A disc: its rim is a polygon of 64 sides.
   const IndexedFaceSet flat = test::grid(16, 16);
   IndexedFaceSet mesh = flat;
@@ -398,19 +418,20 @@ TEST_CASE("decimation: boundaries stay with weight and shrink without", "[decima
     for (std::uint32_t f = 0; f < d.mesh.face_count(); ++f) sum += 0.5 * normal_of(d.mesh, d.positions, f).z;
     return sum;
   };
-  const double before = area(run(mesh, to_faces(mesh.face_count())));
-  DecimateOptions options = to_faces(40);
+  const double before = area(run(mesh, to_faces(operation, mesh.face_count())));
+  DecimateOptions options = to_faces(operation, 40);
   CHECK(area(run(mesh, options)) > 0.97 * before);
   options.boundary_weight = 0;
   CHECK(area(run(mesh, options)) < 0.9 * before);
 }
 
 TEST_CASE("decimation: a smaller angle forbids more", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   IndexedFaceSet mesh = test::icosphere(3);
   test::jitter(mesh, 0.03f, 11);
   std::size_t last = 0;
   for (const double angle : {1.0, 0.3, 0.05}) {
-    DecimateOptions options = to_faces(0);
+    DecimateOptions options = to_faces(operation, 0);
     options.max_normal_deviation = angle;
     const Decimated result = run(mesh, options);
     CHECK(result.stop == DecimateStop::kNoLegalCollapse);
@@ -421,6 +442,7 @@ TEST_CASE("decimation: a smaller angle forbids more", "[decimate]") {
 }
 
 TEST_CASE("decimation: faces without area, and points that coincide, do no harm", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   IndexedFaceSet mesh = test::grid(10, 10);
   // Rows 4 and 5 coincide, and so do three whole points elsewhere.
   for (Vec3& p : mesh.points)
@@ -428,11 +450,11 @@ TEST_CASE("decimation: faces without area, and points that coincide, do no harm"
   mesh.points[13] = mesh.points[14] = mesh.points[24];
   const HalfEdgeMesh input = half_edges(mesh);
   for (const std::size_t target : {180u, 100u, 20u, 2u}) {
-    const Decimated result = run(input, mesh.points, to_faces(target));
+    const Decimated result = run(input, mesh.points, to_faces(operation, target));
     check_sound(input, mesh.points, result);
     CHECK(std::isfinite(result.error));
   }
-  DecimateOptions options = half_edge_collapse();
+  DecimateOptions options = options_of(operation);
   options.max_error = 1e-9;
   const Decimated result = run(input, mesh.points, options);
   CHECK(result.mesh.face_count() == 2);
@@ -460,7 +482,7 @@ TEST_CASE("decimation: faces without area, and points that coincide, do no harm"
     if (turned(connectivity, sheet.points) > 0) continue;
     ++tried;
     for (const std::size_t target : {40u, 25u, 10u, 0u}) {
-      const Decimated less = run(connectivity, sheet.points, to_faces(target));
+      const Decimated less = run(connectivity, sheet.points, to_faces(operation, target));
       CHECK(turned(less.mesh, less.positions) == 0);
     }
   }
@@ -472,18 +494,19 @@ TEST_CASE("decimation: faces without area, and points that coincide, do no harm"
     for (std::size_t i = 0; i < flat.points.size(); ++i)
       flat.points[i] = Vec3(step * static_cast<float>(i), 0, 0);
     const HalfEdgeMesh connectivity = half_edges(flat);
-    check_sound(connectivity, flat.points, run(connectivity, flat.points, to_faces(0)));
+    check_sound(connectivity, flat.points, run(connectivity, flat.points, to_faces(operation, 0)));
   }
 }
 
 TEST_CASE("decimation: large and small coordinates, and a far origin", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   const IndexedFaceSet unit = test::icosphere(3);
-  const std::vector<std::uint32_t> expected = run(unit, to_faces(200)).source_vertex;
+  const std::vector<std::uint32_t> expected = run(unit, to_faces(operation, 200)).source_vertex;
   for (const float scale : {1.0f / 1048576.0f, 1048576.0f}) {
     // A power of two changes no digit.
     IndexedFaceSet mesh = unit;
     for (Vec3& p : mesh.points) p = {p.x * scale, p.y * scale, p.z * scale};
-    CHECK(run(mesh, to_faces(200)).source_vertex == expected);
+    CHECK(run(mesh, to_faces(operation, 200)).source_vertex == expected);
   }
   // Coordinates rounded to 1/1024 stay exact when moved by 4096, and differences are all that counts.
   IndexedFaceSet rounded = unit, moved = unit;
@@ -492,13 +515,15 @@ TEST_CASE("decimation: large and small coordinates, and a far origin", "[decimat
     rounded.points[i] = {round(unit.points[i].x), round(unit.points[i].y), round(unit.points[i].z)};
     moved.points[i] = {rounded.points[i].x + 4096, rounded.points[i].y - 4096, rounded.points[i].z + 4096};
   }
-  CHECK(run(moved, to_faces(200)).source_vertex == run(rounded, to_faces(200)).source_vertex);
+  CHECK(run(moved, to_faces(operation, 200)).source_vertex ==
+        run(rounded, to_faces(operation, 200)).source_vertex);
 }
 
 TEST_CASE("decimation: twice the same bytes", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   IndexedFaceSet mesh = test::torus(40, 20);
   test::jitter(mesh, 0.02f, 1);
-  const Decimated a = run(mesh, to_faces(300)), b = run(mesh, to_faces(300));
+  const Decimated a = run(mesh, to_faces(operation, 300)), b = run(mesh, to_faces(operation, 300));
   CHECK(a.source_vertex == b.source_vertex);
   CHECK(std::equal(a.mesh.origins().begin(), a.mesh.origins().end(), b.mesh.origins().begin(),
                    b.mesh.origins().end()));
@@ -508,12 +533,13 @@ TEST_CASE("decimation: twice the same bytes", "[decimate]") {
 }
 
 TEST_CASE("decimation: targets already met change nothing but isolated vertices", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   IndexedFaceSet mesh = test::icosphere(1);
   mesh.points.insert(mesh.points.begin(), Vec3(9, 9, 9));
   for (std::uint32_t& corner : mesh.corners) ++corner;
   const HalfEdgeMesh input = half_edges(mesh);
   for (const std::size_t target : {mesh.face_count(), mesh.face_count() + 100}) {
-    const Decimated result = run(input, mesh.points, to_faces(target));
+    const Decimated result = run(input, mesh.points, to_faces(operation, target));
     CHECK(result.stop == DecimateStop::kTargetReached);
     CHECK(result.collapses == 0);
     CHECK(result.mesh.vertex_count() == mesh.points.size() - 1);
@@ -523,6 +549,7 @@ TEST_CASE("decimation: targets already met change nothing but isolated vertices"
 }
 
 TEST_CASE("decimation: options and input out of range are refused", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   const IndexedFaceSet mesh = test::icosphere(1);
   const HalfEdgeMesh input = half_edges(mesh);
   const auto code = [&](const HalfEdgeMesh& m, std::span<const Vec3> points, const DecimateOptions& options) {
@@ -532,34 +559,35 @@ TEST_CASE("decimation: options and input out of range are refused", "[decimate]"
   };
   const double nan = std::nan("");
   for (const double angle : {0.0, -1.0, 3.2, nan}) {
-    DecimateOptions options = to_faces(10);
+    DecimateOptions options = to_faces(operation, 10);
     options.max_normal_deviation = angle;
     CHECK(code(input, mesh.points, options) == ErrorCode::kUsage);
   }
   for (const double weight : {-1.0, nan, HUGE_VAL}) {
-    DecimateOptions options = to_faces(10);
+    DecimateOptions options = to_faces(operation, 10);
     options.boundary_weight = weight;
     CHECK(code(input, mesh.points, options) == ErrorCode::kUsage);
   }
   for (const double bound : {-1e-9, nan}) {
-    DecimateOptions options = to_faces(10);
+    DecimateOptions options = to_faces(operation, 10);
     options.max_error = bound;
     CHECK(code(input, mesh.points, options) == ErrorCode::kUsage);
   }
-  CHECK(code(input, std::span(mesh.points).first(5), to_faces(10)) == ErrorCode::kUsage);
+  CHECK(code(input, std::span(mesh.points).first(5), to_faces(operation, 10)) == ErrorCode::kUsage);
   std::vector<Vec3> points = mesh.points;
   points[3].y = HUGE_VALF;
-  CHECK(code(input, points, to_faces(10)) == ErrorCode::kUnsuitable);
+  CHECK(code(input, points, to_faces(operation, 10)) == ErrorCode::kUnsuitable);
   const IndexedFaceSet quads = test::quad_cube();
-  CHECK(code(half_edges(quads), quads.points, to_faces(2)) == ErrorCode::kUnsuitable);
+  CHECK(code(half_edges(quads), quads.points, to_faces(operation, 2)) == ErrorCode::kUnsuitable);
 }
 
 TEST_CASE("decimation: can be cancelled at any report, and leaves the input as it was", "[decimate]") {
+  const DecimateOperation operation = any_operation();
   const IndexedFaceSet mesh = test::icosphere(5);
   const HalfEdgeMesh input = half_edges(mesh);
   int reports = 0;
   double last = 0;
-  REQUIRE(decimate(input, mesh.points, to_faces(500), [&](double fraction) {
+  REQUIRE(decimate(input, mesh.points, to_faces(operation, 500), [&](double fraction) {
     CHECK(fraction >= last);
     CHECK(fraction <= 1);
     last = fraction;
@@ -570,7 +598,8 @@ TEST_CASE("decimation: can be cancelled at any report, and leaves the input as i
   REQUIRE(reports > 2);
   for (int stop = 1; stop <= reports; ++stop) {
     int seen = 0;
-    const auto result = decimate(input, mesh.points, to_faces(500), [&](double) { return ++seen < stop; });
+    const auto result =
+        decimate(input, mesh.points, to_faces(operation, 500), [&](double) { return ++seen < stop; });
     REQUIRE(!result);
     CHECK(result.error().code == ErrorCode::kInterrupted);
     CHECK(seen == stop);
@@ -586,6 +615,7 @@ TEST_CASE("decimation: names of the reasons to stop", "[decimate]") {
 
 TEST_CASE("decimation: every manifold mesh of the CGAL collection stays manifold at any ratio",
           "[decimate][data]") {
+  const DecimateOperation operation = any_operation();
   std::size_t tried = 0;
   for (const auto& path : test::cgal_meshes_for_long_work()) {
     auto file = read_mesh(path);
@@ -601,7 +631,7 @@ TEST_CASE("decimation: every manifold mesh of the CGAL collection stays manifold
     for (const double ratio : {0.5, 0.1, 0.02, 0.005}) {
       INFO(path << " to " << ratio);
       const auto target = static_cast<std::size_t>(ratio * static_cast<double>(faces));
-      const Decimated result = run(*half_edges, triangles->mesh.points, to_faces(target));
+      const Decimated result = run(*half_edges, triangles->mesh.points, to_faces(operation, target));
       check_sound(*half_edges, triangles->mesh.points, result);
       if (result.stop == DecimateStop::kTargetReached) CHECK(result.mesh.face_count() <= target);
     }
@@ -611,6 +641,7 @@ TEST_CASE("decimation: every manifold mesh of the CGAL collection stays manifold
 
 TEST_CASE("decimation: the dragon's coarse versions, with the isolated points and tatters they have",
           "[decimate][data]") {
+  const DecimateOperation operation = any_operation();
   for (const char* name : {"dragon_vrip_res3.ply.gz", "dragon_vrip_res4.ply.gz"}) {
     auto file = read_mesh(test::dragon(name));
     REQUIRE(file);
@@ -622,7 +653,7 @@ TEST_CASE("decimation: the dragon's coarse versions, with the isolated points an
     for (const double ratio : {0.5, 0.1, 0.02, 0.005}) {
       INFO(name << " to " << ratio);
       const auto target = static_cast<std::size_t>(ratio * static_cast<double>(part.face_count()));
-      check_sound(input, part.points, run(input, part.points, to_faces(target)));
+      check_sound(input, part.points, run(input, part.points, to_faces(operation, target)));
     }
   }
 }
@@ -636,12 +667,11 @@ TEST_CASE("decimation: the dragon to a tenth stays manifold and near", "[decimat
   // What the design asks of each; half-edge collapse: 0.80 of the 6.94e-5 of meshoptimizer's simplify. 20,000
   // samples know the mean to 1 %.
   for (const auto& [operation, mean] : {std::pair(DecimateOperation::kEdgeCollapse, 3.5e-5),
-                                        std::pair(DecimateOperation::kHalfEdgeCollapse, 0.8 * 6.94e-5)}) {
-    DecimateOptions options = to_faces(87141);
-    options.operation = operation;
-    const Decimated result = run(input, mesh->points, options);
+                                        std::pair(DecimateOperation::kHalfEdgeCollapse, 0.8 * 6.94e-5),
+                                        std::pair(DecimateOperation::kVertexRemoval, 0.8 * 6.94e-5)}) {
+    const Decimated result = run(input, mesh->points, to_faces(operation, 87141));
     REQUIRE(validate(result.mesh));
-    if (operation == DecimateOperation::kHalfEdgeCollapse) check_sound(input, mesh->points, result);
+    if (operation != DecimateOperation::kEdgeCollapse) check_sound(input, mesh->points, result);
     CHECK(result.stop == DecimateStop::kTargetReached);
     const auto distance = surface_distance({mesh->points, mesh->corners},
                                            {result.positions, result.mesh.origins()}, {20000, 1});

@@ -28,6 +28,9 @@ constexpr float kOfLength = 1e-7f;
 /// Least cosine between a new face and the normal along which all is seen: steeper ones have no reliable
 /// height.
 constexpr float kSteepest = 0.05f;
+/// Heights that are less than this share of the distance to the farthest neighbour may be rounding, and are
+/// 0.
+constexpr float kRounding = 1.0f / (1 << 21);
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 constexpr std::size_t pair(std::size_t a, std::size_t b) {
@@ -38,12 +41,12 @@ constexpr std::size_t triple(std::size_t a, std::size_t b, std::size_t c) {
 }
 
 struct Work {
-  std::array<std::array<Lanes, 3>, kMost> ring;   // scaled
+  std::array<std::array<Lanes, 3>, kMost> ring;    // scaled
   std::array<std::array<Lanes, 3>, kPairs> cross;  // of two neighbours
   std::array<Lanes, kPairs> distance2, crossed, best, error;
   std::array<std::array<Lanes, 3>, kMost> face;  // of v, by the first neighbour: twice its area vector
   std::array<Lanes, kMost> limit, spoke;  // least product with a unit normal, squared; weight of a crossing
-  std::array<Lanes, kMost> reliable;             // 0: the face has no reliable normal; else kNone
+  std::array<Lanes, kMost> reliable;      // 0: the face has no reliable normal; else kNone
   std::array<Lanes, kTriples> apart2, at_v, total;
 };
 
@@ -54,27 +57,29 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
   const float square_cos = cos_deviation * std::fabs(cos_deviation);
   Work w;
   alignas(64) std::array<Lanes, 3> up, normal;
-  alignas(64) Lanes scale, back2, back4, area, along0, along1, along2, base, length2, of_length, quarter;
+  alignas(64) Lanes scale, back2, back4, rounding2, area, along0, along1, along2, base, length2, of_length,
+      quarter;
   alignas(64) Lanes illegal, beyond, misfit, without;  // kNone where it is so, else 0
 
   // Scaled by a power of two, so that no product leaves the range of a float.
   VKMESH_LANES(l) area[l] = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    VKMESH_LANES(l) {
+  for (std::size_t i = 0; i < n; ++i) VKMESH_LANES(l) {
       const float x = batch.ring[i][0][l], y = batch.ring[i][1][l], z = batch.ring[i][2][l];
       const float squared = x * x + y * y + z * z;
       area[l] = area[l] > squared ? area[l] : squared;
     }
   VKMESH_LANES(l) {
-    const std::int32_t half = (static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(area[l]) >> 23) - 127) >> 1;
+    const std::int32_t half =
+        (static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(area[l]) >> 23) - 127) >> 1;
+    rounding2[l] = kRounding * kRounding * area[l];
     scale[l] = std::bit_cast<float>(static_cast<std::uint32_t>(127 - half) << 23);
     const float back = std::bit_cast<float>(static_cast<std::uint32_t>(127 + half) << 23);
     back2[l] = back * back;
     back4[l] = back2[l] * back2[l];
+    rounding2[l] *= scale[l] * scale[l];
   }
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      VKMESH_LANES(l) w.ring[i][k][l] = batch.ring[i][k][l] * scale[l];
+    for (std::size_t k = 0; k < 3; ++k) VKMESH_LANES(l) w.ring[i][k][l] = batch.ring[i][k][l] * scale[l];
 
   for (std::size_t j = 1; j < n; ++j)
     for (std::size_t i = 0; i < j; ++i) {
@@ -93,8 +98,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
   // The faces of v. What is the last where v lies on the boundary, is none, of no area.
   for (std::size_t k = 0; k < 3; ++k) {
     VKMESH_LANES(l) up[k][l] = 0;
-    for (std::size_t i = 0; i + 1 < n; ++i)
-      VKMESH_LANES(l) {
+    for (std::size_t i = 0; i + 1 < n; ++i) VKMESH_LANES(l) {
         w.face[i][k][l] = w.cross[pair(i, i + 1)][k][l];
         up[k][l] += w.face[i][k][l];
       }
@@ -111,8 +115,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
     for (std::size_t k = 0; k < 3; ++k) up[k][l] *= over;
     area[l] = 0;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    VKMESH_LANES(l) w.spoke[i][l] = 0;
+  for (std::size_t i = 0; i < n; ++i) VKMESH_LANES(l) w.spoke[i][l] = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = i + 1 < n ? i + 1 : 0;
     VKMESH_LANES(l) {
@@ -129,8 +132,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
       area[l] += 0.5f * twice;
       quarter[l] = 0.25f * twice;
     }
-    for (const std::size_t end : {i, j})
-      VKMESH_LANES(l) w.spoke[end][l] += quarter[l];
+    for (const std::size_t end : {i, j}) VKMESH_LANES(l) w.spoke[end][l] += quarter[l];
   }
   VKMESH_LANES(l) {
     const float reliable = w.reliable[n - 1][l];
@@ -170,8 +172,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
     const float closed = batch.closed[l];
     along0[l] = closed * batch.c[l];
     along1[l] = closed * (x * b0 + y * b1 + z * b2) * back;
-    along2[l] =
-        (x * (a0 * x + 2 * (a1 * y + a2 * z)) + y * (a3 * y + 2 * a4 * z) + a5 * z * z) * back2[l];
+    along2[l] = (x * (a0 * x + 2 * (a1 * y + a2 * z)) + y * (a3 * y + 2 * a4 * z) + a5 * z * z) * back2[l];
     of_length[l] = kOfLength * area[l] * back4[l];
     const float px = batch.ring[0][0][l], py = batch.ring[0][1][l], pz = batch.ring[0][2][l];
     const float dx = batch.ring[n - 1][0][l] - px, dy = batch.ring[n - 1][1][l] - py,
@@ -185,8 +186,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
                     qz * ((a2 * qx + a4 * qy + a5 * qz) + 2 * b2);
     base[l] = closed > 0 || !(q > 0) ? 0.0f : q;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    VKMESH_LANES(l) w.spoke[i][l] *= back4[l];
+  for (std::size_t i = 0; i < n; ++i) VKMESH_LANES(l) w.spoke[i][l] *= back4[l];
 
   for (std::size_t c = 2; c < n; ++c)
     for (std::size_t b = 1; b < c; ++b)
@@ -204,7 +204,8 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
           const float sides = w.distance2[ab][l] + w.distance2[bc][l];
           const float looks = x1 + x2 + x3, least = kDegenerate * sides;
           const float whole = (x1 > 0 ? x1 : 0.0f) + (x2 > 0 ? x2 : 0.0f) + (x3 > 0 ? x3 : 0.0f);
-          const float apart = whole > 0 ? det / whole : 0.0f;
+          const float height = whole > 0 ? det / whole : 0.0f;
+          const float apart = height * height > rounding2[l] ? height : 0.0f;
           const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (is_root & (x3 >= 0)));
           const float value = along0[l] + apart * (2 * along1[l] + apart * along2[l]);
           const bool has_area = size2 > least * least;
@@ -222,7 +223,8 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
             const float along = normal[0][l] * w.face[f][0][l] + normal[1][l] * w.face[f][1][l] +
                                 normal[2][l] * w.face[f][2][l];
             const float before = misfit[l], none = without[l], reliable = w.reliable[f][l];
-            misfit[l] = (length2[l] > 0) & (along * std::fabs(along) < w.limit[f][l] * length2[l]) ? kNone : before;
+            misfit[l] =
+                (length2[l] > 0) & (along * std::fabs(along) < w.limit[f][l] * length2[l]) ? kNone : before;
             without[l] = none < reliable ? none : reliable;
           }
         };
@@ -251,8 +253,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
     }
 
   // The best of each part between two neighbours.
-  for (std::size_t i = 0; i + 1 < n; ++i)
-    VKMESH_LANES(l) {
+  for (std::size_t i = 0; i + 1 < n; ++i) VKMESH_LANES(l) {
       w.best[pair(i, i + 1)][l] = 0;
       w.error[pair(i, i + 1)][l] = 0;
     }

@@ -21,8 +21,8 @@ namespace vkmesh::detail {
 /// triangulations alike, as of flat ground, that of the shorter edges wins. Where v lies on the boundary, the
 /// new boundary edge counts with the quadric at its point nearest to v.
 ///
-/// Neighbours a, b, c of which no two have v on the edge between them stand in one of two ways: their triangle
-/// holds v, or one's edge of v crosses the new edge of the others. Either way the surfaces lie
+/// Neighbours a, b, c of which no two have v on the edge between them stand in one of two ways: their
+/// triangle holds v, or one's edge of v crosses the new edge of the others. Either way the surfaces lie
 /// det(a, b, c) / Σ max(0, X) apart there, where X are twice the signed areas, seen along the normal, of the
 /// three triangles with v: nothing but products of neighbours is needed.
 struct HoleBatch {
@@ -32,7 +32,9 @@ struct HoleBatch {
   using Lanes = std::array<float, kLanes>;
 
   /// Of neighbours a < b.
-  [[nodiscard]] static constexpr std::size_t pair(std::size_t a, std::size_t b) { return b * (b - 1) / 2 + a; }
+  [[nodiscard]] static constexpr std::size_t pair(std::size_t a, std::size_t b) {
+    return b * (b - 1) / 2 + a;
+  }
 
   // Input. What lies in lanes that were not set does not matter.
 

@@ -29,22 +29,27 @@ class VertexRemovals {
       : state_(state),
         mesh_(state.mesh),
         vertices_(state.mesh.vertices),
-        queue_(vertices_.size(), vertices_.size()) {}
+        queue_(vertices_.size(), vertices_.size()) {
+    due_.reserve(kStars);
+  }
 
   static constexpr std::size_t kStep = Queue::kExact ? 1 : 512;
 
   /// All vertices with their costs.
   void fill() {
     std::array<std::uint32_t, kStars> ids;
+    std::array<float, kStars> errors;
     std::size_t count = 0;
     const auto flush = [&] {
-      walk(std::span(ids).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
-      evaluate([&](const Star& star, std::size_t lane) {
-        if (holes_.error[lane] < kNone)
-          queue_.fill(star.vertex, holes_.error[lane]);
+      errors.fill(kNone);
+      walk(std::span(ids).first(count), [](std::uint32_t) {});
+      evaluate([&](const Star& star, std::size_t lane) { errors[index_of(star)] = holes_.error[lane]; });
+      for (std::size_t i = 0; i < count; ++i) {  // in the order of the input
+        if (errors[i] < kNone)
+          queue_.fill(ids[i], errors[i]);
         else
-          park(star.vertex, Legality::kFoldOver);
-      });
+          park(ids[i], Legality::kFoldOver);
+      }
       count = 0;
     };
     for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
@@ -67,22 +72,25 @@ class VertexRemovals {
     const std::size_t count = queue_.take(taken);
     walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
     due_.clear();
+    std::array<Removal*, kStars> in_order{};
     evaluate([&](const Star& star, std::size_t lane) {
       const float error = holes_.error[lane];
       if (!(error < kNone))
         park(star.vertex, Legality::kFoldOver);
       else if (queue_.is_due(star.vertex, error))
-        due_.push_back({&star, error, triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false});
+        in_order[index_of(star)] = &due_.emplace_back(
+            Removal{&star, error, triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false});
       else
         queue_.insert(star.vertex, error);
     });
     find_existing();
-    for (Removal& removal : due_) {
-      const std::uint32_t v = removal.star->vertex;
+    for (Removal* const removal : in_order) {
+      if (removal == nullptr) continue;
+      const std::uint32_t v = removal->star->vertex;
       if (vertices_[v].has(CollapseVertex::kTouched) || state_.reached())
         queue_.insert_now(v);
       else
-        attempt(removal);
+        attempt(*removal);
     }
     for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
     touched_.clear();
@@ -189,7 +197,13 @@ class VertexRemovals {
     for (std::size_t n = 1; n < first.size(); ++n) first[n] += first[n - 1];
     first_ = first;
     for (std::size_t i = 0; i < ids.size(); ++i)
-      if (walked_[i].edges != kTooMany) order_[first[walked_[i].neighbours()]++] = static_cast<std::uint32_t>(i);
+      if (walked_[i].edges != kTooMany)
+        order_[first[walked_[i].neighbours()]++] = static_cast<std::uint32_t>(i);
+  }
+
+  /// Of a star among the vertices that were walked around.
+  [[nodiscard]] std::size_t index_of(const Star& star) const {
+    return static_cast<std::size_t>(&star - walked_.data());
   }
 
   void put_apex_last(Star& star) const {
@@ -401,8 +415,8 @@ class VertexRemovals {
       absorb(vertices_[r], gone, share);
     }
     if (gone.weight > 0)
-      state_.outcome.error2 = std::max(
-          state_.outcome.error2, static_cast<double>(removal.error) / static_cast<double>(gone.weight));
+      state_.outcome.error2 = std::max(state_.outcome.error2,
+                                       static_cast<double>(removal.error) / static_cast<double>(gone.weight));
     const auto faces = mesh_.fill_hole(std::span(star.edge).first(star.edges), removal.triangles.all());
     gone.leading = CollapseVertex::kGone | heir;
     if (state_.keep_events)
@@ -440,7 +454,8 @@ class VertexRemovals {
     while (true) {
       const std::size_t ac = HoleBatch::pair(a, c);
       const auto b = static_cast<std::size_t>(holes.third[ac][lane]);
-      const float at_a = holes.left[HoleBatch::pair(b, c)][lane], at_c = holes.left[HoleBatch::pair(a, b)][lane];
+      const float at_a = holes.left[HoleBatch::pair(b, c)][lane],
+                  at_c = holes.left[HoleBatch::pair(a, b)][lane];
       if (at_c < 0) {
         c = b;
       } else if (at_a < 0) {

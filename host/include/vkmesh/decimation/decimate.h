@@ -46,7 +46,9 @@ struct DecimateOptions {
   /// Stop when this share of the faces is left, in [0, 1].
   std::optional<double> target_ratio;
   /// Do no collapse whose error exceeds this: the root of the area-weighted mean squared distance, in units
-  /// of the positions, to the planes that the kept vertex stands for (those of faces and of the boundary).
+  /// of the positions, to the planes that the kept vertex stands for (those of faces and of the boundary). Of
+  /// a vertex that is removed: that of the point below or above it, to the planes that it stood for, and what
+  /// the new edges lie below or above its own.
   std::optional<double> max_error;
   /// The same as a share of the bounding box's diagonal.
   std::optional<double> max_relative_error;
@@ -67,6 +69,15 @@ struct DecimateOptions {
   double crease_weight = 10.0;  ///< Of these planes. Default 10.
   /// Vertices that are neither moved nor removed, in any order. A collapse may end in one.
   std::vector<std::uint32_t> locked_vertices;
+  /// Edges that stay as they are, ends and all: half-edges, either of the two, where 3 f + i goes from corner
+  /// i of face f to the next.
+  std::vector<std::uint32_t> locked_edges;
+  /// Faces that stay as they are, corners and all.
+  std::vector<std::uint32_t> locked_faces;
+  /// Before all else, take away each component whose bounding box has a diagonal of at most this, in units of
+  /// the positions, or as a share of the whole mesh's diagonal. The component of most faces always stays.
+  /// Default: none goes. Ratios remain those of all faces.
+  std::optional<double> prune_size, prune_relative_size;
   /// Fill Decimated::history. Default off: it takes 28 bytes a collapse.
   bool keep_history = false;
 };
@@ -81,10 +92,11 @@ enum class DecimateStop {
 /// "target reached", "error bound", "time limit", "no legal collapse".
 [[nodiscard]] std::string name_of(DecimateStop stop);
 
-/// One collapse. Vertices and faces are the input's.
+/// One collapse or removal. Vertices and faces are the input's.
 template <class Point>
 struct Collapse {
-  std::uint32_t kept = kInvalid;     ///< The vertex that stands for both from now on.
+  /// The vertex that stands for both from now on. Of a removal: the neighbour nearest to the one that went.
+  std::uint32_t kept = kInvalid;
   std::uint32_t removed = kInvalid;  ///< The one that it has absorbed.
   Point position{};                  ///< Where `kept` lies from now on.
   /// The faces that went; on the boundary one is kInvalid.
@@ -98,10 +110,11 @@ struct BasicDecimated {
   /// For each vertex of `mesh` the vertex of the input whose place it keeps in the history; ascending. A
   /// half-edge collapse leaves it where it was.
   std::vector<std::uint32_t> source_vertex;
-  /// For each face of `mesh` the face of the input it was; ascending. Its corners keep their order.
+  /// For each face of `mesh` the face of the input it was; ascending. Its corners keep their order. After
+  /// vertex removal: one of those whose place it has taken.
   std::vector<std::uint32_t> source_face;
-  /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones, which
-  /// are dropped.
+  /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones and
+  /// those of pruned components, which are dropped.
   std::vector<std::uint32_t> vertex_map;
   /// Every collapse in order, if asked for.
   std::vector<Collapse<Point>> history;
@@ -110,6 +123,8 @@ struct BasicDecimated {
   /// of the bounding box's diagonal.
   double error = 0, relative_error = 0;
   std::size_t collapses = 0;
+  /// What prune_size took away.
+  std::size_t pruned_components = 0, pruned_faces = 0;
   // How often a collapse was found illegal, and why.
   std::size_t rejected_link = 0;       ///< It would make the surface non-manifold, or nothing.
   std::size_t rejected_fold_over = 0;  ///< A face would fold over.
@@ -120,7 +135,12 @@ struct BasicDecimated {
 using Decimated = BasicDecimated<Vec3>;
 
 /// M. Garland and P. Heckbert, "Surface simplification using quadric error metrics" (1997): planes are
-/// weighted by area, and the legal collapse of least error is done, again and again.
+/// weighted by area, and the legal collapse of least error is done, again and again. Vertex removal after W.
+/// Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes" (1992), with the best of all
+/// triangulations of the hole: that from which the old surface lies least far, where both are seen along the
+/// normal of the vertex. It makes no edge that exists, and gives the planes of the vertex to the corners of
+/// the triangle below it, each its barycentric share. A vertex of more than 16 neighbours stays until it has
+/// fewer.
 ///
 /// Order: with optimal placement the error of an edge only rises, so edges lie in a MonotoneQueue under lower
 /// bounds of their errors, and a collapse is among the cheapest to 1/16 octave. Half-edge collapses go the
