@@ -45,13 +45,14 @@ Result<void> add_host(Programme& programme, const Input& input) {
          options.iterations = kSmoothingSteps;
          return timed([&] { return laplacian_smoothing(*neighbours, input.mesh.points, options); });
        }});
-  for (const auto operation : {DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse}) {
+  for (const auto& [operation, what] :
+       {std::pair(DecimateOperation::kEdgeCollapse, ", edge collapse"),
+        std::pair(DecimateOperation::kHalfEdgeCollapse, ", half-edge collapse"),
+        std::pair(DecimateOperation::kVertexRemoval, ", vertex removal")}) {
     const auto decimated = std::make_shared<Decimated>();
     programme.contestants.push_back(
-        {step::kDecimation,
-         operation == DecimateOperation::kEdgeCollapse ? name + ", edge collapse"
-                                                       : name + ", half-edge collapse",
-         [&input, operation, decimated]() -> Result<double> {
+        {step::kDecimation, name + what,
+         [&input, operation = operation, decimated]() -> Result<double> {
            DecimateOptions options;
            options.operation = operation;
            options.target_faces = input.decimation_target;

@@ -19,7 +19,8 @@ namespace vkmesh::detail {
 /// a sum over new triangles and new edges, so the best of all triangulations is found part by part, each part
 /// of the polygon once (G. Klincsek, "Minimal triangulations of polygonal domains", 1980). Among
 /// triangulations alike, as of flat ground, that of the shorter edges wins. Where v lies on the boundary, the
-/// new boundary edge counts with the quadric at its point nearest to v.
+/// quadric counts at the point of the new boundary edge nearest to v, and at a point below or above v, where
+/// there is one, only what it rises by from v.
 ///
 /// Neighbours a, b, c of which no two have v on the edge between them stand in one of two ways: their
 /// triangle holds v, or one's edge of v crosses the new edge of the others. Either way the surfaces lie

@@ -78,8 +78,7 @@ class VertexRemovals {
       if (!(error < kNone))
         park(star.vertex, Legality::kFoldOver);
       else if (queue_.is_due(star.vertex, error))
-        in_order[index_of(star)] = &due_.emplace_back(
-            Removal{&star, error, triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false});
+        in_order[index_of(star)] = &due_.emplace_back(removal_of(star, lane));
       else
         queue_.insert(star.vertex, error);
     });
@@ -103,8 +102,11 @@ class VertexRemovals {
     for (std::uint32_t v = 0; v < mesh_.apex() && !held; ++v) {
       if (!vertices_[v].alive() || !vertices_[v].has(CollapseVertex::kHasParked)) continue;
       walk(std::span(&v, 1), [](std::uint32_t) {});
-      evaluate([&](const Star&, std::size_t lane) {
-        held = holes_.error[lane] < kNone && too_far(v, holes_.error[lane]);
+      evaluate([&](const Star& star, std::size_t lane) {
+        if (!(holes_.error[lane] < kNone)) return;
+        Removal removal = removal_of(star, lane);
+        avoid_existing(removal);
+        held = removal.error < kNone && too_far(v, removal.error);
       });
     }
     return held;
@@ -319,6 +321,10 @@ class VertexRemovals {
   /// Beyond the face between neighbour i and the next.
   [[nodiscard]] std::uint32_t beyond(const Star& star, std::size_t i) const {
     return mesh_.twin(CollapseMesh::next(star.edge[i]));
+  }
+
+  [[nodiscard]] Removal removal_of(const Star& star, std::size_t lane) const {
+    return {&star, holes_.error[lane], triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false};
   }
 
   [[nodiscard]] static Triangles triangles_of(const HoleBatch& holes, std::size_t lane, const Star& star) {
