@@ -182,7 +182,7 @@ using Decimated = BasicDecimated<Vec3>;
 /// Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes" (1992), with the best of all
 /// triangulations of the hole: that from which the old surface lies least far, where both are seen along the
 /// normal of the vertex. It makes no edge that exists, and gives the planes of the vertex to the corners of
-/// the triangle below it, each its barycentric share. A vertex of more than 32 neighbours stays until it has
+/// the triangle below it, each its barycentric share. A vertex of more than 16 neighbours stays until it has
 /// fewer.
 ///
 /// Order: with optimal placement the error of an edge only rises, so edges lie in a MonotoneQueue under lower
