@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,8 +88,26 @@ bool write(const std::filesystem::path& path, const void* bytes, std::size_t cou
   return static_cast<bool>(file);
 }
 
-bool write_seeds(const std::filesystem::path& folder) {
+/// Each shape, each operation and each point type, with changes that a small generator chooses: no format
+/// says what these bytes should be.
+bool write_decimation_seeds(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
   bool written = true;
+  for (std::uint32_t seed = 0; seed < 48; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::uint8_t> bytes(200);
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    bytes[0] = static_cast<std::uint8_t>(seed);      // the point type
+    bytes[1] = 0;                                    // one shape
+    bytes[2] = static_cast<std::uint8_t>(seed / 2);  // its kind
+    bytes[5] %= 64;                                  // changes
+    written = write(folder / std::to_string(seed), bytes.data(), bytes.size()) && written;
+  }
+  return written;
+}
+
+bool write_seeds(const std::filesystem::path& folder) {
+  bool written = write_decimation_seeds(folder / "decimate");
   for (const Seed& seed : seeds()) {
     const auto bytes = bytes_of(seed.mesh);
     std::filesystem::create_directories(folder / "consolidate");
