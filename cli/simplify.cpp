@@ -203,8 +203,7 @@ void add_simplify(CLI::App& app, Program& program) {
       "vertex-removal\n"
       "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz one.ply --ratio 0.1 --prune-relative-size 0.01\n"
       "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40\n"
-      "  vkmesh simplify data/dragon/dragon_vrip_res3.ply.gz sure.ply --ratio 0.2 --attribute "
-      "confidence=0.02\n"
+      "  vkmesh simplify data/cgal/meshes/mesh_with_colors.off painted.ply --faces 3 --attribute color=0.05\n"
       "  vkmesh simplify data/dragon/dragon_vrip_res3.ply.gz level.ply --ratio 0.5 --operation "
       "half-edge-collapse --index-only");
   add_common_options(*command, program.options, true, true);
