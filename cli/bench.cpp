@@ -13,6 +13,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <vkmesh/decimation/decimate.h>
 #include <vkmesh/passes/bilateral_smoothing.h>
 #include <vkmesh/passes/collapse_costs.h>
 #include <vkmesh/passes/curvatures.h>
@@ -42,6 +43,7 @@ BenchBytes::BenchBytes(const BenchSubject& subject) {
   bilateral_smoothing = points + per_half_edge + points;
   collapse_costs = points + 2 * per_half_edge + 24 * v + per_half_edge;
   swap_scores = points + 2 * per_half_edge + per_half_edge;
+  decimation = points + per_half_edge + (points + per_half_edge) / 10;
 }
 
 BilateralWidth bench_widths(const BenchSubject& subject) {
@@ -85,7 +87,7 @@ class HostBench : public BenchPlace {
     };
     const BilateralWidth width = bench_widths(s);
     const CollapseCostOptions frame = unit_frame(s.positions);
-    const std::vector<BenchPass> passes = {
+    std::vector<BenchPass> passes = {
         {"triangle normals", bytes.triangle_normals,
          [&s] { return timed([&] { return triangle_normals(s.mesh, s.positions); }); }},
         {"vertex normals", bytes.vertex_normals, normals(NormalWeights::kArea)},
@@ -115,6 +117,17 @@ class HostBench : public BenchPlace {
            });
          }},
     };
+    // One thread. Removed is nine tenths of the vertices, so the time of a triangle tells that of a removal.
+    for (const auto& [name, operation] :
+         {std::pair("decimation by edge collapses", DecimateOperation::kEdgeCollapse),
+          std::pair("decimation by half-edge collapses", DecimateOperation::kHalfEdgeCollapse),
+          std::pair("decimation by vertex removals", DecimateOperation::kVertexRemoval)})
+      passes.push_back({name, bytes.decimation, [&s, operation = operation] {
+                          DecimateOptions options;
+                          options.operation = operation;
+                          options.target_ratio = kBenchRatio;
+                          return timed([&] { return decimate({s.positions, s.mesh.origins()}, options); });
+                        }});
     for (const BenchPass& pass : passes)
       if (pass.name.find(only) != std::string::npos) VKMESH_CHECK(use(pass));
     return {};
@@ -305,16 +318,18 @@ void add_bench(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("bench", "Times every pass on a device");
   command->footer(
       "For each mesh and pass: the median time, the same for a triangle, how many bytes a second go through "
-      "that the\npass must read or write at least, and how many times as long it takes as a plain copy of "
-      "that "
-      "many bytes on the\nsame device. (On the host from memory, not from a cache. A copy reads and writes "
-      "each byte: half the inverse is the share of "
-      "its "
-      "bandwidth.) Times are those\nof the device, without transfers. Smoothing: one step of ten in one "
-      "submission. Bilateral: sigma_f of four mean\nedge lengths.\n\n"
-      "Example:\n  vkmesh bench data/dragon/dragon_vrip_res3.ply.gz data/dragon/dragon_vrip.ply.gz --splits "
-      "2 "
-      "--device cpu");
+      "that the\n"
+      "pass must read or write at least, and how many times as long it takes as a plain copy of that many "
+      "bytes on the\n"
+      "same device. (On the host from memory, not from a cache. A copy reads and writes each byte: half the "
+      "inverse is\n"
+      "the share of its bandwidth.) Times are those of the device, without transfers. Smoothing: one step of "
+      "ten in one\n"
+      "submission. Bilateral: sigma_f of four mean edge lengths. Decimation: to a tenth, on one thread of "
+      "the host.\n\n"
+      "Example:\n"
+      "  vkmesh bench data/dragon/dragon_vrip_res3.ply.gz data/dragon/dragon_vrip.ply.gz --splits 2 --device "
+      "cpu");
   add_common_options(*command, program.options, false, false);
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("FILE", options->files, "Meshes, from small to large")->type_name("")->required();

@@ -26,6 +26,9 @@ struct BenchSubject {
 /// Smoothing is timed by this many steps in one go; its rows are of one step.
 inline constexpr std::uint32_t kBenchSteps = 10;
 
+/// Decimation leaves this share of the triangles.
+inline constexpr double kBenchRatio = 0.1;
+
 struct BenchPass {
   std::string name;
   /// What the pass must read and write at least: its inputs and its results once, nothing in between.
@@ -53,7 +56,7 @@ class BenchPlace {
 struct BenchBytes {
   explicit BenchBytes(const BenchSubject& subject);
   std::uint64_t triangle_normals, vertex_normals, dihedral_angles, curvatures, smoothing_step, measures,
-      bilateral_smoothing, collapse_costs, swap_scores;
+      bilateral_smoothing, collapse_costs, swap_scores, decimation;
 };
 
 /// The options of the bilateral row: σ_f of four mean edge lengths, σ_g of one.

@@ -1,4 +1,4 @@
-// vkmesh simplify: fewer triangles, by collapsing edges with quadric error.
+// vkmesh simplify: fewer triangles, by quadric error.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -22,7 +22,8 @@ struct SimplifyOptions {
   std::string boundary = "in-shape";
   std::optional<double> ratio;
   std::optional<std::size_t> faces, vertices;
-  std::optional<double> error, relative_error, time_limit, crease_angle;
+  std::optional<double> error, relative_error, time_limit, crease_angle, prune_size, prune_relative_size;
+  std::string lock;
   double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
 };
 
@@ -48,6 +49,50 @@ std::string why(DecimateStop stop, const SimplifyOptions& options) {
   return {};
 }
 
+DecimateOptions decimation_of(const SimplifyOptions& options) {
+  DecimateOptions decimation;
+  decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
+  if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
+  if (options.operation == "vertex-removal") decimation.operation = DecimateOperation::kVertexRemoval;
+  if (options.placement == "midpoint") decimation.placement = CollapsePlacement::kMidpoint;
+  if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
+  if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
+  if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
+  if (options.crease_angle) decimation.crease_angle = *options.crease_angle * kRadians;
+  decimation.prune_size = options.prune_size;
+  decimation.prune_relative_size = options.prune_relative_size;
+  decimation.target_faces = options.faces;
+  decimation.target_vertices = options.vertices;
+  decimation.target_ratio = options.ratio;
+  decimation.max_error = options.error;
+  decimation.max_relative_error = options.relative_error;
+  decimation.time_limit = options.time_limit;
+  return decimation;
+}
+
+/// Locks the points and faces whose value in the channel of that name is not 0.
+Result<void> lock_marked(const IndexedFaceSet& mesh, const std::string& name, DecimateOptions& decimation) {
+  const auto marked = [](const Channel& channel) {
+    std::vector<std::uint32_t> found;
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t i = 0; i < values.size(); ++i)
+            if (values[i] != 0 && (found.empty() || found.back() != i / channel.components))
+              found.push_back(static_cast<std::uint32_t>(i / channel.components));
+        },
+        channel.values);
+    return found;
+  };
+  const Channel *of_points = find_channel(mesh.point_channels, name),
+                *of_faces = find_channel(mesh.face_channels, name);
+  if (of_points == nullptr && of_faces == nullptr)
+    return fail(ErrorCode::kUsage,
+                "--lock " + name + ": neither points nor faces have an attribute of this name");
+  if (of_points != nullptr) decimation.locked_vertices = marked(*of_points);
+  if (of_faces != nullptr) decimation.locked_faces = marked(*of_faces);
+  return {};
+}
+
 Result<void> run(Job& job, const SimplifyOptions& options) {
   if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
       !options.time_limit)
@@ -65,6 +110,8 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   VKMESH_TRY(HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   say_what_is_lost(job, mesh.corner_channels, "corners");
   say_what_is_lost(job, mesh.face_channels, "faces");
+  DecimateOptions decimation = decimation_of(options);
+  if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
   // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
   IndexedFaceSet input;
   std::swap(input.points, mesh.points);
@@ -72,21 +119,6 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   mesh = {};
 
   const std::size_t faces = half_edges.face_count();
-  DecimateOptions decimation;
-  decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
-  if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
-  if (options.operation == "vertex-removal") decimation.operation = DecimateOperation::kVertexRemoval;
-  if (options.placement == "midpoint") decimation.placement = CollapsePlacement::kMidpoint;
-  if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
-  if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
-  if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
-  if (options.crease_angle) decimation.crease_angle = *options.crease_angle * kRadians;
-  decimation.target_faces = options.faces;
-  decimation.target_vertices = options.vertices;
-  decimation.target_ratio = options.ratio;
-  decimation.max_error = options.error;
-  decimation.max_relative_error = options.relative_error;
-  decimation.time_limit = options.time_limit;
   VKMESH_TRY(Decimated decimated, job.timed("compute", [&] {
     return decimate(half_edges, input.points, decimation, job.progress("simplifying"));
   }));
@@ -107,6 +139,8 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
                           {"relative_error", decimated.relative_error},
                           {"ratio", ratio},
                           {"collapses", decimated.collapses},
+                          {"pruned_components", decimated.pruned_components},
+                          {"pruned_faces", decimated.pruned_faces},
                           {"rejected_link", decimated.rejected_link},
                           {"rejected_fold_over", decimated.rejected_fold_over},
                           {"rejected_error", decimated.rejected_error},
@@ -114,6 +148,9 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   job.row("simplified", "to " + brief(100 * ratio) + " % of " + count_of(faces, "triangle") +
                             "; largest error " + brief(decimated.error) + " in units of the file, " +
                             brief(100 * decimated.relative_error) + " % of the diagonal");
+  if (decimated.pruned_components > 0)
+    job.row("pruned", count_of(decimated.pruned_components, "component") + " of " +
+                          count_of(decimated.pruned_faces, "triangle"));
   job.row("stopped", why(decimated.stop, options));
   job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
                            " that would break the manifold, " + grouped(decimated.rejected_fold_over) +
@@ -134,6 +171,9 @@ void add_simplify(CLI::App& app, Program& program) {
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz near.ply --relative-error 1e-4 --boundary kept\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz few.ply --vertices 5000 --operation "
       "half-edge-collapse\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz best.ply --ratio 0.1 --operation "
+      "vertex-removal\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz one.ply --ratio 0.1 --prune-relative-size 0.01\n"
       "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
@@ -194,6 +234,23 @@ void add_simplify(CLI::App& app, Program& program) {
                    "between 0 and 180, default 75")
       ->type_name("DEG")
       ->check(number_between(0, 180));
+  command
+      ->add_option("--lock", options->lock,
+                   "Name of an attribute: points and faces where it is not 0 stay as they are")
+      ->type_name("NAME");
+  CLI::Option* prune =
+      command
+          ->add_option("--prune-size", options->prune_size,
+                       "First take away components whose bounding box has a diagonal of at most this, in\n"
+                       "units of the file's coordinates; that of most triangles always stays")
+          ->type_name("SIZE")
+          ->check(number_between(0, std::numeric_limits<double>::max()));
+  command
+      ->add_option("--prune-relative-size", options->prune_relative_size,
+                   "The same as a share of the whole mesh's diagonal")
+      ->type_name("SIZE")
+      ->check(number_between(0, std::numeric_limits<double>::max()))
+      ->excludes(prune);
   command->callback([&program, options] {
     program.command = "simplify";
     program.action = [options](Job& job) { return run(job, *options); };

@@ -321,3 +321,38 @@ TEST_CASE("simplify keeps point attributes with their points, and names what it 
   REQUIRE(dropped.code == 0);
   CHECK_THAT(dropped.json().at("notes").dump(), Contains("uv"));
 }
+
+TEST_CASE("simplify leaves what is locked, and prunes what is small") {
+  const Scratch scratch;
+  const std::string out = scratch.path("out.ply");
+  IndexedFaceSet mesh = icosphere(3);
+  const std::size_t sphere = mesh.points.size();
+  mesh = both(mesh, icosphere(0, 0.01f), Vec3(2.0f));
+  std::string ply = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.points.size()) +
+                    "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar mark\n"
+                    "element face " +
+                    std::to_string(mesh.face_count()) +
+                    "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3& p : mesh.points) {
+    const bool mark = p.z > 0.5f && p.z < 1.5f;
+    ply += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) +
+           (mark ? " 1\n" : " 0\n");
+  }
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    ply += "3 " + std::to_string(mesh.face(f)[0]) + " " + std::to_string(mesh.face(f)[1]) + " " +
+           std::to_string(mesh.face(f)[2]) + "\n";
+  const std::string in = scratch.file("in.ply", ply);
+  const Outcome outcome =
+      vkmesh_run({"simplify", in, out, "--faces", "4", "--lock", "mark", "--prune-size", "0.1", "--json"});
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.json().at("result").at("pruned_components") == 1);
+  CHECK(outcome.json().at("result").at("pruned_faces") == 20);
+  const IndexedFaceSet left = mesh_in(out), before = mesh_in(in);
+  CHECK(left.points.size() < sphere / 2);
+  for (std::size_t v = 0; v < before.points.size(); ++v) {
+    const bool is_left =
+        std::find(left.points.begin(), left.points.end(), before.points[v]) != left.points.end();
+    if (before.points[v].z > 0.5f && before.points[v].z < 1.5f) CHECK(is_left);
+    if (v >= sphere) CHECK(!is_left);
+  }
+}

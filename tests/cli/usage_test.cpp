@@ -122,6 +122,10 @@ TEST_CASE("A wrong command line is refused with exit code 2 and a sentence") {
       {{"simplify", in, out, "--faces", "-3"}, "--faces"},
       {{"simplify", in, out, "--error", "-1"}, "--error"},
       {{"simplify", in, out, "--ratio", "0.5", "--max-normal-deviation", "270"}, "--max-normal-deviation"},
+      {{"simplify", in, out, "--ratio", "0.5", "--lock", "mark"}, "mark"},
+      {{"simplify", in, out, "--ratio", "0.5", "--prune-size", "-1"}, "--prune-size"},
+      {{"simplify", in, out, "--ratio", "0.5", "--operation", "vertex-removal", "--placement", "midpoint"},
+       "--placement"},
       {{"convert", in, "-", "--json"}, "--json"},
   };
   for (const Case& one : cases) {

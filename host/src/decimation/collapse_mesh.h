@@ -145,6 +145,13 @@ class CollapseMesh {
     return own;
   }
 
+  /// Takes away a face of the mesh and the ghosts at it; the rest of its component must go too.
+  void erase_with_ghosts(std::uint32_t f) {
+    for (const std::uint32_t t : faces_[f].twin)
+      if (is_ghost(t)) faces_[t >> 2].origin[0] = kInvalid;
+    faces_[f].origin[0] = kInvalid;
+  }
+
   /// Removes the origin of `edges`, all that leave it, counter-clockwise, and puts these triangles in the
   /// place of its faces: corners are numbers of edges, and stand for their targets, in ascending order, so
   /// that the apex, if it is there, is that of the last. No new edge may be in the mesh. Returns the sources

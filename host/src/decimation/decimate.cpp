@@ -17,6 +17,7 @@
 #include "decimation/edge_collapses.h"
 #include "decimation/frame.h"
 #include "decimation/gather_result.h"
+#include "decimation/prune.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/spatial_order.h"
 #include "decimation/vertex_removals.h"
@@ -46,7 +47,7 @@ Result<Outcome> run(DecimationState& state, const DecimateOptions& options, Coll
                 : kByEdgeCollapses<OptimalPlacement, LazyQueue>)(state, progress);
 }
 
-Result<void> check(const DecimateOptions& options, std::size_t vertices) {
+Result<void> check(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
   const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
   if (options.max_error && !(*options.max_error >= 0)) return usage("max_error must be at least 0");
   if (options.max_relative_error && !(*options.max_relative_error >= 0))
@@ -64,7 +65,26 @@ Result<void> check(const DecimateOptions& options, std::size_t vertices) {
     return usage("crease_angle must lie between 0 and pi");
   for (const std::uint32_t v : options.locked_vertices)
     if (v >= vertices) return usage("a locked vertex is not of the mesh");
+  for (const std::uint32_t h : options.locked_edges)
+    if (h >= corners) return usage("a locked edge is not of the mesh");
+  for (const std::uint32_t f : options.locked_faces)
+    if (f >= corners / 3) return usage("a locked face is not of the mesh");
+  for (const auto& size : {options.prune_size, options.prune_relative_size})
+    if (size && !(*size >= 0)) return usage("prune_size must be at least 0");
   return {};
+}
+
+/// Edges and faces stay when their vertices do.
+void lock(CollapseMesh& mesh, std::span<const std::uint32_t> corners, const DecimateOptions& options) {
+  if (options.locked_vertices.empty() && options.locked_edges.empty() && options.locked_faces.empty()) return;
+  std::vector<bool> locked(mesh.apex(), false);
+  for (const std::uint32_t v : options.locked_vertices) locked[v] = true;
+  for (const std::uint32_t h : options.locked_edges)
+    for (const std::uint32_t c : {h, h % 3 == 2 ? h - 2 : h + 1}) locked[corners[c]] = true;
+  for (const std::uint32_t f : options.locked_faces)
+    for (std::size_t i = 0; i < 3; ++i) locked[corners[3 * f + i]] = true;
+  for (std::uint32_t v = 0; v < mesh.apex(); ++v)
+    if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
 }
 
 template <class Point>
@@ -74,7 +94,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               const Progress& progress) {
   constexpr std::size_t kGrain = 1 << 14;
   const auto begun = std::chrono::steady_clock::now();
-  VKMESH_CHECK(check(options, points.size()));
+  VKMESH_CHECK(check(options, points.size(), corners.size()));
   if (corners.size() % 3 != 0) return fail(ErrorCode::kUsage, "decimation takes three corners a face");
   if (corners.size() / 3 > CollapseMesh::kMaxFaces || points.size() > CollapseMesh::kMaxVertices)
     return fail(ErrorCode::kUnsuitable,
@@ -143,12 +163,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   leading = {};
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());  // it lies nowhere
-  if (!options.locked_vertices.empty()) {
-    std::vector<bool> locked(points.size(), false);
-    for (const std::uint32_t v : options.locked_vertices) locked[v] = true;
-    for (std::size_t v = 0; v < points.size(); ++v)
-      if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
-  }
+  lock(mesh, corners, options);
   if (options.boundary == DecimateBoundary::kKept)
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
       for (std::uint32_t i = 0; i < 3; ++i)
@@ -164,6 +179,13 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     weights.crease_cosine = static_cast<float>(std::cos(*options.crease_angle));
   }
   sum_quadrics(mesh, weights);
+
+  Pruned pruned;
+  if (options.prune_size || options.prune_relative_size)
+    pruned = prune_components(
+        mesh,
+        static_cast<float>(frame.scale * std::max(options.prune_size.value_or(0),
+                                                  options.prune_relative_size.value_or(0) * frame.diagonal)));
 
   Limits limits;
   limits.faces = options.target_faces.value_or(0);
@@ -181,9 +203,13 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (options.time_limit)
     limits.seconds =
         *options.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  DecimationState state{mesh, limits, mesh.face_count(), used, options.keep_history, {}};
+  DecimationState state{
+      mesh, limits, mesh.face_count() - pruned.faces, used - pruned.vertices, options.keep_history, {}};
   VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
-  return gather(mesh, points, in_order, frame, outcome);
+  BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome);
+  result.pruned_components = pruned.components;
+  result.pruned_faces = pruned.faces;
+  return result;
 }
 
 template <class Point>

@@ -74,6 +74,7 @@ class EdgeCollapses {
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
         for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin)
           prefetch(&vertices_[v]);
+        if (!mesh_.alive(4 * f)) continue;
         for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
           const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
           mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);

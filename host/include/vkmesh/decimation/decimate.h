@@ -69,6 +69,15 @@ struct DecimateOptions {
   double crease_weight = 10.0;  ///< Of these planes. Default 10.
   /// Vertices that are neither moved nor removed, in any order. A collapse may end in one.
   std::vector<std::uint32_t> locked_vertices;
+  /// Edges that stay as they are, ends and all: half-edges, either of the two, where 3 f + i goes from corner
+  /// i of face f to the next.
+  std::vector<std::uint32_t> locked_edges;
+  /// Faces that stay as they are, corners and all.
+  std::vector<std::uint32_t> locked_faces;
+  /// Before all else, take away each component whose bounding box has a diagonal of at most this, in units of
+  /// the positions, or as a share of the whole mesh's diagonal. The component of most faces always stays.
+  /// Default: none goes. Ratios remain those of all faces.
+  std::optional<double> prune_size, prune_relative_size;
   /// Fill Decimated::history. Default off: it takes 28 bytes a collapse.
   bool keep_history = false;
 };
@@ -104,8 +113,8 @@ struct BasicDecimated {
   /// For each face of `mesh` the face of the input it was; ascending. Its corners keep their order. After
   /// vertex removal: one of those whose place it has taken.
   std::vector<std::uint32_t> source_face;
-  /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones, which
-  /// are dropped.
+  /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones and
+  /// those of pruned components, which are dropped.
   std::vector<std::uint32_t> vertex_map;
   /// Every collapse in order, if asked for.
   std::vector<Collapse<Point>> history;
@@ -114,6 +123,8 @@ struct BasicDecimated {
   /// of the bounding box's diagonal.
   double error = 0, relative_error = 0;
   std::size_t collapses = 0;
+  /// What prune_size took away.
+  std::size_t pruned_components = 0, pruned_faces = 0;
   // How often a collapse was found illegal, and why.
   std::size_t rejected_link = 0;       ///< It would make the surface non-manifold, or nothing.
   std::size_t rejected_fold_over = 0;  ///< A face would fold over.
