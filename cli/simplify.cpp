@@ -7,9 +7,11 @@
 #include <string>
 
 #include <vkmesh/decimation/decimate.h>
+#include <vkmesh/triangulate.h>
 
 #include "backend.h"
 #include "commands.h"
+#include "simplify_attributes.h"
 
 namespace vkmesh::cli {
 namespace {
@@ -24,14 +26,10 @@ struct SimplifyOptions {
   std::optional<std::size_t> faces, vertices;
   std::optional<double> error, relative_error, time_limit, crease_angle, prune_size, prune_relative_size;
   std::string lock;
+  std::vector<std::string> attributes;
+  bool index_only = false;
   double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
 };
-
-void say_what_is_lost(Job& job, const std::vector<Channel>& channels, const char* of) {
-  for (const Channel& channel : channels)
-    job.note("the attribute " + channel.name + " of " + of +
-             " was left out: faces do not outlive simplification");
-}
 
 std::string why(DecimateStop stop, const SimplifyOptions& options) {
   switch (stop) {
@@ -103,40 +101,59 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
     return fail(ErrorCode::kUsage, "a half-edge collapse ends in an endpoint: leave --placement out");
   if (options.operation == "vertex-removal" && options.placement != "optimal")
     return fail(ErrorCode::kUsage, "vertex removal moves no points: leave --placement out");
+  if (options.operation == "vertex-removal" && !options.attributes.empty())
+    return fail(ErrorCode::kUsage, "vertex removal takes no attributes: leave --attribute out");
+  const bool points_stay = options.operation != "edge-collapse" || options.placement == "endpoint";
+  if (options.index_only && !points_stay)
+    return fail(ErrorCode::kUsage,
+                "--index-only leaves all points where they are: add --operation half-edge-collapse");
   use_host(job);
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  if (!mesh.is_triangles()) job.note("polygons were cut into triangles");
   VKMESH_TRY(HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
-  say_what_is_lost(job, mesh.corner_channels, "corners");
-  say_what_is_lost(job, mesh.face_channels, "faces");
+  if (!mesh.is_triangles()) {
+    job.note("polygons were cut into triangles");
+    VKMESH_TRY(Triangulated cut, triangulate(mesh));  // as the half-edges were
+    mesh = std::move(cut.mesh);
+  }
   DecimateOptions decimation = decimation_of(options);
   if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
+  VKMESH_TRY(const SimplifyAttributes attributes,
+             SimplifyAttributes::of(job, mesh, options.attributes, points_stay,
+                                    options.operation == "vertex-removal"));
+  attributes.add_to(decimation);
   // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
-  IndexedFaceSet input;
-  std::swap(input.points, mesh.points);
-  std::swap(input.point_channels, mesh.point_channels);
+  std::vector<Vec3> points = std::move(mesh.points);
   mesh = {};
 
   const std::size_t faces = half_edges.face_count();
   VKMESH_TRY(Decimated decimated, job.timed("compute", [&] {
-    return decimate(half_edges, input.points, decimation, job.progress("simplifying"));
+    return decimate(half_edges, points, decimation, job.progress("simplifying"));
   }));
   half_edges = {};
 
   IndexedFaceSet output;
-  output.points = std::move(decimated.positions);
   output.corners.assign(decimated.mesh.origins().begin(), decimated.mesh.origins().end());
-  if (!input.point_channels.empty() && decimation.operation == DecimateOperation::kEdgeCollapse &&
-      decimation.placement != CollapsePlacement::kEndpoint)
-    job.note("points were moved: each has the attributes of a point that it stands for");
-  output.point_channels = gather(input.point_channels, decimated.source_vertex);
+  if (options.index_only) {
+    for (std::uint32_t& corner : output.corners) corner = decimated.source_vertex[corner];
+    output.points = std::move(points);
+    attributes.give_index_only(decimated, output);
+  } else {
+    output.points = std::move(decimated.positions);
+    attributes.give(decimated, output);
+    if (attributes.has_points() && !points_stay)
+      job.note(
+          "points were moved: each has the attributes of a point that it stands for, unless --attribute "
+          "names them");
+  }
   const double ratio =
       faces == 0 ? 1.0 : static_cast<double>(output.face_count()) / static_cast<double>(faces);
   job.json()["result"] = {{"stop", name_of(decimated.stop)},
                           {"operation", options.operation},
                           {"error", decimated.error},
                           {"relative_error", decimated.relative_error},
+                          {"attributes", attributes.names()},
+                          {"attribute_error", decimated.attribute_error},
                           {"ratio", ratio},
                           {"collapses", decimated.collapses},
                           {"pruned_components", decimated.pruned_components},
@@ -144,7 +161,8 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
                           {"rejected_link", decimated.rejected_link},
                           {"rejected_fold_over", decimated.rejected_fold_over},
                           {"rejected_error", decimated.rejected_error},
-                          {"rejected_locked", decimated.rejected_locked}};
+                          {"rejected_locked", decimated.rejected_locked},
+                          {"rejected_seam", decimated.rejected_seam}};
   job.row("simplified", "to " + brief(100 * ratio) + " % of " + count_of(faces, "triangle") +
                             "; largest error " + brief(decimated.error) + " in units of the file, " +
                             brief(100 * decimated.relative_error) + " % of the diagonal");
@@ -154,7 +172,15 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   job.row("stopped", why(decimated.stop, options));
   job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
                            " that would break the manifold, " + grouped(decimated.rejected_fold_over) +
-                           " that would fold a face over");
+                           " that would fold a face over" +
+                           (attributes.names().empty()
+                                ? std::string()
+                                : ", " + grouped(decimated.rejected_seam) + " that would break a seam"));
+  std::string names;
+  for (const std::string& name : attributes.names()) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty())
+    job.row("attributes", names + "; largest weighted error " + brief(decimated.attribute_error) +
+                              ", as a share of the ranges");
   return job.write(output);
 }
 
@@ -164,8 +190,10 @@ void add_simplify(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("simplify", "Reduces the number of triangles");
   command->footer(
       "The cheapest edge is collapsed, again and again, by quadric error; the first rule met stops it. "
-      "Point\n"
-      "attributes stay with the points that remain. Runs on the host whatever --device says.\n\n"
+      "Attributes\n"
+      "of points and faces stay with those that remain; those of corners, as texture coordinates, are made "
+      "to\n"
+      "fit. Runs on the host whatever --device says.\n\n"
       "Examples:\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz near.ply --relative-error 1e-4 --boundary kept\n"
@@ -174,7 +202,11 @@ void add_simplify(CLI::App& app, Program& program) {
       "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz best.ply --ratio 0.1 --operation "
       "vertex-removal\n"
       "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz one.ply --ratio 0.1 --prune-relative-size 0.01\n"
-      "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40");
+      "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res3.ply.gz sure.ply --ratio 0.2 --attribute "
+      "confidence=0.02\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res3.ply.gz level.ply --ratio 0.5 --operation "
+      "half-edge-collapse --index-only");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<SimplifyOptions>();
@@ -197,6 +229,17 @@ void add_simplify(CLI::App& app, Program& program) {
                    "the error; free: it may shrink")
       ->type_name("NAME")
       ->check(CLI::IsMember({"kept", "in-shape", "free"}));
+  command
+      ->add_option(
+          "--attribute", options->attributes,
+          "An attribute of points or corners that counts in the error. At weight 1 a change over its\n"
+          "whole range counts as a move by the diagonal of the bounding box; default 0.01. More than\n"
+          "one may be given; all: each. What corners have but for normals counts, with the default\n"
+          "weight, if it is not named; seams stay closed")
+      ->type_name("NAME[=WEIGHT]");
+  command->add_flag("--index-only", options->index_only,
+                    "Keep all points of the file as they are and where they are in it, and write fewer\n"
+                    "triangles over them: for half-edge collapses and vertex removal");
   command
       ->add_option("--crease-angle", options->crease_angle,
                    "Edges bent by at least so many degrees are creases, whose shape counts in the error\n"

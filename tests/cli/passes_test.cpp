@@ -1,7 +1,12 @@
 // vkmesh normals, curvature, creases, smooth and simplify on the host, on meshes with known answers.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -317,9 +322,98 @@ TEST_CASE("simplify keeps point attributes with their points, and names what it 
   const std::string obj = scratch.file("in.obj",
                                        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                                        "f 1/1 2/2 3/3\nf 1/4 3/2 4/1\n");
-  const Outcome dropped = vkmesh_run({"simplify", obj, out, "--ratio", "1", "--json"});
+  const std::string kept = scratch.path("kept.obj");
+  REQUIRE(vkmesh_run({"simplify", obj, kept, "--ratio", "1"}).code == 0);
+  CHECK(corner_floats_of(mesh_in(kept), "uv") == corner_floats_of(mesh_in(obj), "uv"));
+  const Outcome dropped =
+      vkmesh_run({"simplify", obj, kept, "--ratio", "1", "--operation", "vertex-removal", "--json"});
   REQUIRE(dropped.code == 0);
   CHECK_THAT(dropped.json().at("notes").dump(), Contains("uv"));
+}
+
+TEST_CASE("simplify keeps seams, and the points of the file where it is told to") {
+  const Scratch scratch;
+  // A tube of quads, unrolled, with a material for each half of its length and a normal for each quad.
+  std::string text;
+  constexpr int kRings = 30, kSides = 24;
+  const auto number = [](double x) { return std::to_string(x) + " "; };
+  for (int i = 0; i <= kRings; ++i)
+    for (int j = 0; j <= kSides; ++j) {
+      const double angle = 2 * std::numbers::pi * j / kSides;
+      if (j < kSides)
+        text += "v " + number(std::cos(angle)) + number(std::sin(angle)) + number(0.1 * i) + "\n";
+      text += "vt " + number(1.0 * j / kSides) + number(1.0 * i / kRings) + "\n";
+    }
+  for (int j = 0; j < kSides; ++j)
+    text += "vn " + number(std::cos(2 * std::numbers::pi * (j + 0.5) / kSides)) +
+            number(std::sin(2 * std::numbers::pi * (j + 0.5) / kSides)) + "0\n";
+  for (int i = 0; i < kRings; ++i) {
+    if (i % (kRings / 2) == 0) text += "usemtl half" + std::to_string(2 * i / kRings) + "\n";
+    for (int j = 0; j < kSides; ++j) {
+      text += "f";
+      for (const auto& [di, dj] : {std::pair{0, 0}, std::pair{0, 1}, std::pair{1, 1}, std::pair{1, 0}})
+        text += " " + std::to_string((i + di) * kSides + (j + dj) % kSides + 1) + "/" +
+                std::to_string((i + di) * (kSides + 1) + j + dj + 1) + "/" + std::to_string(j + 1);
+      text += "\n";
+    }
+  }
+  const std::string in = scratch.file("in.obj", text), out = scratch.path("out.obj");
+  const auto object = vkmesh_run({"simplify", in, out, "--ratio", "0.2", "--json"}).json();
+  CHECK(object.at("result").at("attributes") == std::vector<std::string>{"uv"});
+  CHECK_THAT(object.at("notes").dump(), Contains("normal of corners was left out"));
+  const IndexedFaceSet mesh = mesh_in(out);
+  CHECK(mesh.face_count() <= 288);
+  REQUIRE(find_channel(mesh.face_channels, "material") != nullptr);
+  CHECK(find_channel(mesh.face_channels, "material")->labels == std::vector<std::string>{"half0", "half1"});
+  const auto uv = corner_floats_of(mesh, "uv");
+  REQUIRE(uv.size() == 2 * mesh.corners.size());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    float low = 1, high = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float u = uv[6 * f + 2 * k], v = uv[6 * f + 2 * k + 1];
+      low = std::min(low, u);
+      high = std::max(high, u);
+      CHECK(std::abs(v - mesh.points[face[k]].z / 3) < 0.01f);
+    }
+    CHECK(high - low < 0.5f);
+  }
+
+  // Normals of quads: nothing can move but along the quads' edges that run along the tube.
+  const auto flat =
+      vkmesh_run({"simplify", in, out, "--ratio", "0.2", "--attribute", "normal=0.1", "--json"}).json();
+  CHECK(flat.at("result").at("attributes").size() == 2);
+  const IndexedFaceSet sides = mesh_in(out);
+  CHECK(sides.face_count() <= 288);
+  const auto normals = corner_floats_of(sides, "normal");
+  REQUIRE(normals.size() == 3 * sides.corners.size());
+  for (std::size_t c = 0; c < sides.corners.size(); c += 3)
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(normals[3 * c + k] - normals[3 * c + 3 + k]) < 1e-4f);
+
+  REQUIRE(
+      vkmesh_run({"simplify", in, out, "--ratio", "0.2", "--operation", "half-edge-collapse", "--index-only"})
+          .code == 0);
+  const IndexedFaceSet all = mesh_in(in), level = mesh_in(out);
+  CHECK(level.points == all.points);
+  CHECK(level.face_count() <= 288);
+  std::set<std::array<float, 3>> known;
+  const auto before = corner_floats_of(all, "uv"), after = corner_floats_of(level, "uv");
+  for (std::size_t c = 0; c < all.corners.size(); ++c)
+    known.insert({static_cast<float>(all.corners[c]), before[2 * c], before[2 * c + 1]});
+  for (std::size_t c = 0; c < level.corners.size(); ++c)
+    CHECK(known.count({static_cast<float>(level.corners[c]), after[2 * c], after[2 * c + 1]}) == 1);
+
+  const auto error = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"simplify", in, out, "--ratio", "0.2"});
+    const Outcome outcome = vkmesh_run(more);
+    CHECK(outcome.code != 0);
+    return outcome.err;
+  };
+  CHECK_THAT(error({"--index-only"}), Contains("add --operation half-edge-collapse"));
+  CHECK_THAT(error({"--attribute", "colour"}), Contains("neither points nor corners"));
+  CHECK_THAT(error({"--attribute", "uv=x"}), Contains("a number of at least 0"));
+  CHECK_THAT(error({"--attribute", "uv", "--operation", "vertex-removal"}),
+             Contains("leave --attribute out"));
 }
 
 TEST_CASE("simplify leaves what is locked, and prunes what is small") {

@@ -150,62 +150,42 @@ bool CollapseMesh::close(std::span<const std::uint32_t> boundary) {
 std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32_t> edges,
                                                      std::span<const std::array<std::uint8_t, 3>> triangles) {
   const std::size_t n = edges.size();
-  // A triangle takes the record of the face that it has an edge of the hole in common with, so that a ghost
-  // remains a ghost; one without such an edge what is left, which no ghost's is, since ghosts come last.
-  std::vector<std::uint32_t> record(triangles.size(), kInvalid), vertex(n), outside(n);
-  std::vector<bool> used(n, false);
+  std::array<std::uint32_t, kMostAtHole> vertex, record;
+  // By two corners the half-edge that waits for its twin: first what lies around the hole, then edges of
+  // triangles whose other side is still to come.
+  std::array<std::array<std::uint32_t, kMostAtHole>, kMostAtHole> beyond;
   for (std::size_t i = 0; i < n; ++i) {
     vertex[i] = target(edges[i]);
-    outside[i] = twin(next(edges[i]));
+    record[i] = edges[i] >> 2;
+    if (i + 1 < n)
+      beyond[i][i + 1] = twin(next(edges[i]));
+    else
+      beyond[0][i] = twin(next(edges[i]));
   }
-  const auto edge_of = [&](std::size_t from, std::size_t to) { return (from + 1) % n == to ? from : n; };
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (const std::size_t k : {1u, 2u, 0u}) {  // of an ear's ghost, the first is the only one of a ghost
-      const std::size_t edge = edge_of(triangles[t][k], triangles[t][(k + 1) % 3]);
-      if (edge == n) continue;
-      record[t] = edges[edge] >> 2;
-      used[edge] = true;
-      break;
-    }
-  std::size_t free = 0;
-  for (std::uint32_t& r : record) {
-    if (r != kInvalid) continue;
-    while (used[free]) ++free;
-    used[free] = true;
-    r = edges[free] >> 2;
-  }
-  std::array<std::uint32_t, 2> gone{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (used[i]) continue;
-    gone[count++] = faces_[edges[i] >> 2].source;
-    faces_[edges[i] >> 2].origin[0] = kInvalid;
-  }
-
-  std::vector<std::array<std::uint32_t, 3>> open;  // new edges of one triangle so far: from, to, half-edge
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Face& face = faces_[record[t]];
+  // The faces at an apex are the last two.
+  const std::size_t ghost = vertex[n - 1] == apex_ ? n - 1 : kInvalid;
+  std::size_t taken = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const std::uint32_t f = c == ghost ? record[n - 1] : record[taken++], h = 4 * f;
+    Face& face = faces_[f];
     face.tags = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3], h = 4 * record[t] + k;
-      face.origin[k] = vertex[from];
-      if (vertex[from] != apex_) vertices[vertex[from]].leading = h;
-      const std::size_t edge = edge_of(from, to);
-      if (edge != n) {
-        set_twins(h, outside[edge]);
-        continue;
-      }
-      const auto other =
-          std::find_if(open.begin(), open.end(), [&](const auto& e) { return e[0] == to && e[1] == from; });
-      if (other == open.end()) {
-        open.push_back({from, to, h});
-      } else {
-        set_twins(h, (*other)[2]);
-        open.erase(other);
-      }
-    }
+    face.origin = {vertex[a], vertex[b], vertex[c]};
+    vertices[vertex[a]].leading = h;
+    vertices[vertex[b]].leading = h + 1;
+    if (c != ghost) vertices[vertex[c]].leading = h + 2;
+    set_twins(h + 2, beyond[a][c]);
+    if (b == a + 1)
+      set_twins(h, beyond[a][b]);
+    else
+      beyond[a][b] = h;
+    if (c == b + 1)
+      set_twins(h + 1, beyond[b][c]);
+    else
+      beyond[b][c] = h + 1;
   }
-  return gone;
+  const std::array<std::uint32_t, 2> gone = {record[taken], record[ghost == kInvalid ? n - 1 : n - 2]};
+  for (const std::uint32_t f : gone) faces_[f].origin[0] = kInvalid;
+  return {faces_[gone[0]].source, faces_[gone[1]].source};
 }
 
 }  // namespace vkmesh::detail

@@ -149,10 +149,13 @@ class CollapseMesh {
     faces_[f].origin[0] = kInvalid;
   }
 
+  static constexpr std::size_t kMostAtHole = 17;
   /// Removes the origin of `edges`, all that leave it, counter-clockwise, and puts these triangles in the
-  /// place of its faces: corners are numbers of edges, and stand for their targets, in ascending order, so
-  /// that the apex, if it is there, is that of the last. No new edge may be in the mesh. Returns the sources
-  /// of the two faces that went, kInvalid for a ghost. O(edges).
+  /// place of its faces: corners are numbers of edges in ascending order, and stand for their targets. Each
+  /// new edge stands in an earlier triangle as one between neighbouring corners, and in a later one between
+  /// the first and the last. The apex is the target of the last edge if of any. No new edge may be in the
+  /// mesh. Returns the sources of the two faces that went, kInvalid for a ghost. At most kMostAtHole edges;
+  /// O(edges).
   std::array<std::uint32_t, 2> fill_hole(std::span<const std::uint32_t> edges,
                                          std::span<const std::array<std::uint8_t, 3>> triangles);
 

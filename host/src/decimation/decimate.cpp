@@ -153,7 +153,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
   VKMESH_TRY(const Frame frame, frame_of(points, std::span<const std::uint8_t>(in_use)));
-  in_use = {};
+  in_use = std::vector<std::uint8_t>();  // {} would keep the memory
   const auto local = [&](std::size_t v) {
     std::array<float, 3> x;
     for (int k = 0; k < 3; ++k)
@@ -180,6 +180,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
           face_order[slot] = static_cast<std::uint32_t>(f);
           for (std::size_t i = 0; i < 3; ++i) sorted[3 * slot + i] = rank[corners[3 * f + i]];
         });
+    rank = std::vector<std::uint32_t>();
     manifold = mesh.build(points.size(), sorted, leading);
     if (manifold)
       for (std::uint32_t f = 0; f < faces; ++f) mesh.face(4 * f).source = face_order[f];
@@ -199,7 +200,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     vertex.source = source;
     used += leading[v] != kInvalid ? 1 : 0;
   }
-  leading = {};
+  leading = std::vector<std::uint32_t>();
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());  // it lies nowhere
   lock(mesh, corners, options);
@@ -209,7 +210,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
         if (mesh.is_ghost(mesh.twin(4 * f + i)))
           mesh.vertices[mesh.origin(4 * f + i)].source |= CollapseVertex::kLocked;
   const bool in_order = vertex_order.empty();
-  vertex_order = {};
+  vertex_order = std::vector<std::uint32_t>();
   detail::ConstraintWeights weights;
   if (options.boundary == DecimateBoundary::kInShape)
     weights.boundary = static_cast<float>(options.boundary_weight);

@@ -1,12 +1,24 @@
 #include "decimation/hole.h"
 
-#include <algorithm>
+#include <bit>
 #include <cmath>
+
+#include "passes/clones.h"
+
+// A loop over lanes. g++ 12 would unroll a short one before it looks for vectors, and find none.
+#if defined(__GNUC__) && !defined(__clang__)
+#define VKMESH_LANES(l) _Pragma("GCC unroll 1") for (std::size_t l = 0; l < kLanes; ++l)
+#else
+#define VKMESH_LANES(l) for (std::size_t l = 0; l < kLanes; ++l)
+#endif
 
 namespace vkmesh::detail {
 namespace {
 
-using Vector = Hole::Vector;
+constexpr std::size_t kLanes = HoleBatch::kLanes, kMost = HoleBatch::kMost, kPairs = HoleBatch::kPairs;
+constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
+using Lanes = HoleBatch::Lanes;
+using Flags = std::array<std::int32_t, kLanes>;
 
 /// A triangle of less area than this share of its squared sides has no reliable normal; as in FaceTurns.
 constexpr float kDegenerate = 1e-6f;
@@ -19,235 +31,268 @@ constexpr float kSteepest = 0.05f;
 /// Heights that are less than this share of the distance to the farthest neighbour may be rounding, and are
 /// 0.
 constexpr float kRounding = 1.0f / (1 << 21);
-constexpr float kAgainst = -0.5f;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-float dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+constexpr std::size_t pair(std::size_t a, std::size_t b) {
+  return HoleBatch::pair(a, b);
 }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+constexpr std::size_t triple(std::size_t a, std::size_t b, std::size_t c) {
+  return c * (c - 1) * (c - 2) / 6 + pair(a, b);
 }
-float distance2(const Vector& a, const Vector& b) {
-  const Vector d = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return dot(d, d);
-}
-float cosine(const Vector& a, const Vector& b) {
-  const float lengths = std::sqrt(dot(a, a)) * std::sqrt(dot(b, b));
-  return lengths > 0 ? dot(a, b) / lengths : 1.0f;
-}
+
+struct Work {
+  std::array<std::array<Lanes, 3>, kMost> ring;    // scaled
+  std::array<std::array<Lanes, 3>, kPairs> cross;  // of two neighbours
+  std::array<Lanes, kPairs> distance2, crossed, best, error;
+  std::array<std::array<Lanes, 3>, kMost> face;  // of v, by the first neighbour: twice its area vector
+  std::array<Lanes, kMost> limit, spoke;  // least product with a unit normal, squared; weight of a crossing
+  std::array<Lanes, kMost> reliable;      // 0: the face has no reliable normal; else kNone
+  std::array<Lanes, kTriples> apart2, at_v, total;
+};
 
 }  // namespace
 
-float QuadricAt::at(const Vector& x) const {
-  const float ax = a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
-  const float ay = a[1] * x[0] + a[3] * x[1] + a[4] * x[2];
-  const float az = a[2] * x[0] + a[4] * x[1] + a[5] * x[2];
-  return std::max(c + x[0] * (ax + 2 * b[0]) + x[1] * (ay + 2 * b[1]) + x[2] * (az + 2 * b[2]), 0.0f);
-}
+// Each loop over lanes is one over vector registers.
+VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviation) {
+  const float square_cos = cos_deviation * std::fabs(cos_deviation);
+  Work w;
+  alignas(64) std::array<Lanes, 3> up, normal;
+  alignas(64) Lanes scale, back2, back4, rounding2, area, along0, along1, along2, base, length2, of_length,
+      quarter;
+  alignas(64) Lanes illegal, beyond, misfit, without;  // kNone where it is so, else 0
 
-/// Twice the area vector of the face between neighbour i and the one after it.
-Vector Hole::face(std::size_t i) const {
-  if (i + 1 < size_) return cross_[i][i + 1];
-  const Vector& x = cross_[0][i];
-  return {-x[0], -x[1], -x[2]};
-}
-
-bool Hole::set(std::span<const Vector> ring, bool closed) {
-  size_ = ring.size();
-  closed_ = closed;
-  std::copy(ring.begin(), ring.end(), ring_.begin());
-  std::fill_n(forbidden_.begin(), size_, 0u);
-  const std::size_t faces = closed ? size_ : size_ - 1;
-  for (std::size_t i = 0; i < size_; ++i)
-    for (std::size_t j = i + 1; j < size_; ++j) cross_[i][j] = cross(ring_[i], ring_[j]);
-  Vector sum{};
-  for (std::size_t i = 0; i < faces; ++i)
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += face(i)[k];
-  const float length = std::sqrt(dot(sum, sum));
-  if (!(length > 0)) return false;
-  for (std::size_t k = 0; k < 3; ++k) up_direction_[k] = sum[k] / length;
-
-  for (std::size_t i = 0; i < size_; ++i) {
-    height_[i] = dot(up_direction_, ring_[i]);
-    for (std::size_t j = i + 1; j < size_; ++j) up_[i][j] = dot(up_direction_, cross_[i][j]);
-  }
-  float farthest2 = 0;
-  for (std::size_t i = 0; i < size_; ++i) farthest2 = std::max(farthest2, dot(ring_[i], ring_[i]));
-  rounding_ = kRounding * std::sqrt(farthest2);
-  area_ = 0;
-  std::fill_n(spoke_.begin(), size_, 0.0f);
-  bool beyond = false;  // more than half a turn from the first
-  for (std::size_t i = 0; i < faces; ++i) {
-    const std::size_t j = i + 1 < size_ ? i + 1 : 0;
-    const Vector n = face(i);
-    const float twice = std::sqrt(dot(n, n)), sides = dot(ring_[i], ring_[i]) + dot(ring_[j], ring_[j]);
-    if (up(i, j) < -kDegenerate * sides) return false;
-    if (i > 0) {
-      if (beyond && up_[0][i] > 0) return false;  // around more than once
-      beyond = beyond || up_[0][i] < 0;
+  // Scaled by a power of two, so that no product leaves the range of a float.
+  VKMESH_LANES(l) area[l] = 0;
+  for (std::size_t i = 0; i < n; ++i) VKMESH_LANES(l) {
+      const float x = batch.ring[i][0][l], y = batch.ring[i][1][l], z = batch.ring[i][2][l];
+      const float squared = x * x + y * y + z * z;
+      area[l] = area[l] > squared ? area[l] : squared;
     }
-    area_ += 0.5f * twice;
-    spoke_[i] += 0.25f * twice;
-    spoke_[j] += 0.25f * twice;
+  VKMESH_LANES(l) {
+    const std::int32_t half =
+        (static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(area[l]) >> 23) - 127) >> 1;
+    rounding2[l] = kRounding * kRounding * area[l];
+    scale[l] = std::bit_cast<float>(static_cast<std::uint32_t>(127 - half) << 23);
+    const float back = std::bit_cast<float>(static_cast<std::uint32_t>(127 + half) << 23);
+    back2[l] = back * back;
+    back4[l] = back2[l] * back2[l];
+    rounding2[l] *= scale[l] * scale[l];
   }
-  return !(beyond && !closed && up_[0][size_ - 1] > 0);
-}
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < 3; ++k) VKMESH_LANES(l) w.ring[i][k][l] = batch.ring[i][k][l] * scale[l];
 
-Vector Hole::normal(std::size_t i, std::size_t l, std::size_t j) const {
-  const Vector &a = cross_[i][l], &b = cross_[l][j], &c = cross_[i][j];
-  return {a[0] + b[0] - c[0], a[1] + b[1] - c[1], a[2] + b[2] - c[2]};
-}
+  for (std::size_t j = 1; j < n; ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      const std::size_t ij = pair(i, j);
+      VKMESH_LANES(l) {
+        const float ax = w.ring[i][0][l], ay = w.ring[i][1][l], az = w.ring[i][2][l];
+        const float bx = w.ring[j][0][l], by = w.ring[j][1][l], bz = w.ring[j][2][l];
+        const float dx = bx - ax, dy = by - ay, dz = bz - az;
+        w.cross[ij][0][l] = ay * bz - az * by;
+        w.cross[ij][1][l] = az * bx - ax * bz;
+        w.cross[ij][2][l] = ax * by - ay * bx;
+        w.distance2[ij][l] = dx * dx + dy * dy + dz * dz;
+      }
+    }
 
-bool Hole::is_legal(std::size_t i, std::size_t l, std::size_t j, float cos_deviation) const {
-  const Vector n = normal(i, l, j);
-  const float length = std::sqrt(dot(n, n)), up = up_[i][l] + up_[l][j] - up_[i][j];
-  const float sides = distance2(ring_[i], ring_[l]) + distance2(ring_[l], ring_[j]);
-  const bool has_area = length > kDegenerate * sides;
-  if (has_area && up < kSteepest * length) return false;
-  bool had_none = false;
-  const auto turns = [&](std::size_t edge, std::size_t next) {
-    const Vector before = face(edge);
-    const float size = std::sqrt(dot(before, before));
-    if (size > kDegenerate * (dot(ring_[edge], ring_[edge]) + dot(ring_[next], ring_[next])))
-      return has_area && dot(n, before) < cos_deviation * (length * size);
-    had_none = true;
-    return false;
-  };
-  if (l == i + 1 && turns(i, l)) return false;
-  if (j == l + 1 && turns(l, j)) return false;
-  if (closed_ && i == 0 && j + 1 == size_ && turns(j, i)) return false;
-  return has_area || had_none;
-}
-
-float Hole::error_at_v(std::size_t i, std::size_t l, std::size_t j) const {
-  const float up = up_[i][l] + up_[l][j] - up_[i][j];
-  const float z = (up_[l][j] * height_[i] - up_[i][j] * height_[l] + up_[i][l] * height_[j]) / up;
-  if (std::fabs(z) <= rounding_) return along0_;
-  return std::max(along0_ + z * (2 * along1_ + z * along2_), 0.0f);
-}
-
-float Hole::edge_error(std::size_t i, std::size_t j) const {
-  const bool inner = up_[i][j] > 0;  // v lies on its left: the neighbours between i and j on its right
-  const std::size_t a = inner ? i : j, b = inner ? j : i;
-  const float across = inner ? up_[i][j] : -up_[i][j];
-  float error = 0;
-  const auto cross = [&](std::size_t s) {
-    const float as = up(a, s), whole = as + up(s, b);
-    if (!(whole > across)) return;
-    const float u = as / whole, t = across / whole;
-    const float dz = t * height_[s] - (height_[a] + u * (height_[b] - height_[a]));
-    error += std::fabs(dz) <= rounding_ ? 0.0f : spoke_[s] * (dz * dz);
-  };
-  if (!(across > 0)) return 0;
-  if (inner) {
-    for (std::size_t s = i + 1; s < j; ++s) cross(s);
-  } else {
-    for (std::size_t s = j + 1; s < size_; ++s) cross(s);
-    for (std::size_t s = 0; s < i; ++s) cross(s);
+  // The faces of v. What is the last where v lies on the boundary, is none, of no area.
+  for (std::size_t k = 0; k < 3; ++k) {
+    VKMESH_LANES(l) up[k][l] = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i) VKMESH_LANES(l) {
+        w.face[i][k][l] = w.cross[pair(i, i + 1)][k][l];
+        up[k][l] += w.face[i][k][l];
+      }
+    VKMESH_LANES(l) {
+      w.face[n - 1][k][l] = batch.closed[l] * -w.cross[pair(0, n - 1)][k][l];
+      up[k][l] += w.face[n - 1][k][l];
+    }
   }
-  return error;
-}
+  VKMESH_LANES(l) {
+    const float size = std::sqrt(up[0][l] * up[0][l] + up[1][l] * up[1][l] + up[2][l] * up[2][l]);
+    illegal[l] = size > 0 ? 0.0f : kNone;
+    beyond[l] = 0;
+    const float over = 1.0f / (size > 0 ? size : 1.0f);
+    for (std::size_t k = 0; k < 3; ++k) up[k][l] *= over;
+    area[l] = 0;
+  }
+  for (std::size_t i = 0; i < n; ++i) VKMESH_LANES(l) w.spoke[i][l] = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t j = i + 1 < n ? i + 1 : 0;
+    VKMESH_LANES(l) {
+      const float x = w.face[i][0][l], y = w.face[i][1][l], z = w.face[i][2][l];
+      const float ax = w.ring[i][0][l], ay = w.ring[i][1][l], az = w.ring[i][2][l];
+      const float bx = w.ring[j][0][l], by = w.ring[j][1][l], bz = w.ring[j][2][l];
+      const float sides = (ax * ax + ay * ay + az * az) + (bx * bx + by * by + bz * bz);
+      const float twice = std::sqrt(x * x + y * y + z * z);
+      const float looks = up[0][l] * x + up[1][l] * y + up[2][l] * z;
+      const bool reliable = twice > kDegenerate * sides;
+      illegal[l] = looks >= -kDegenerate * sides ? illegal[l] : kNone;
+      w.limit[i][l] = reliable ? square_cos * (twice * twice) : -1e30f;
+      w.reliable[i][l] = reliable ? kNone : 0.0f;
+      area[l] += 0.5f * twice;
+      quarter[l] = 0.25f * twice;
+    }
+    for (const std::size_t end : {i, j}) VKMESH_LANES(l) w.spoke[end][l] += quarter[l];
+  }
+  VKMESH_LANES(l) {
+    const float reliable = w.reliable[n - 1][l];
+    w.reliable[n - 1][l] = batch.closed[l] > 0 ? reliable : kNone;
+  }
 
-bool Hole::fill(const QuadricAt& quadric, float cos_deviation) {
-  const std::size_t n = size_;
-  const auto& a = quadric.a;
-  const Vector& u = up_direction_;
-  along0_ = quadric.c;
-  along1_ = dot(quadric.b, u);
-  along2_ = u[0] * (a[0] * u[0] + 2 * (a[1] * u[1] + a[2] * u[2])) + u[1] * (a[3] * u[1] + 2 * a[4] * u[2]) +
-            a[5] * u[2] * u[2];
-  for (std::size_t i = 0; i + 1 < n; ++i) best_[i][i + 1] = 0;
-  for (std::size_t span = 2; span < n; ++span)
-    for (std::size_t i = 0; i + span < n; ++i) {
-      const std::size_t j = i + span;
-      float least = kNone;
-      std::size_t apex = 0;
-      if ((forbidden_[i] >> j & 1u) == 0)
-        for (std::size_t l = i + 1; l < j; ++l) {
-          float sum = best_[i][l] + best_[l][j];
-          if (!(sum < least) || !is_legal(i, l, j, cos_deviation)) continue;
-          if (contains_v(i, l, j)) sum += error_at_v(i, l, j);
-          if (!(sum < least)) continue;
-          least = sum;
-          apex = l;
+  for (std::size_t j = 1; j < n; ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      const std::size_t ij = pair(i, j);
+      const bool side = j == i + 1;
+      VKMESH_LANES(l) {
+        const float x =
+            up[0][l] * w.cross[ij][0][l] + up[1][l] * w.cross[ij][1][l] + up[2][l] * w.cross[ij][2][l];
+        batch.left[ij][l] = side && !(x > 0) ? 0.0f : x;
+      }
+    }
+  const std::size_t root = pair(0, n - 1);
+  VKMESH_LANES(l) {
+    const float x = batch.left[root][l];
+    batch.left[root][l] = (batch.closed[l] > 0) & (x > 0) ? 0.0f : x;
+  }
+  for (std::size_t i = 1; i < n; ++i)  // around once at most
+    VKMESH_LANES(l) {
+      const float x = batch.left[pair(0, i)][l];
+      const float was = beyond[l], before = illegal[l];
+      illegal[l] = (was > 0) & (x > 0) ? kNone : before;
+      beyond[l] = x < 0 ? kNone : was;
+    }
+
+  // The quadric along the normal, and on a new boundary edge.
+  VKMESH_LANES(l) {
+    const float x = up[0][l], y = up[1][l], z = up[2][l];
+    const float a0 = batch.a[0][l], a1 = batch.a[1][l], a2 = batch.a[2][l], a3 = batch.a[3][l],
+                a4 = batch.a[4][l], a5 = batch.a[5][l];
+    const float b0 = batch.b[0][l], b1 = batch.b[1][l], b2 = batch.b[2][l];
+    const float back = 1.0f / scale[l];
+    const float closed = batch.closed[l];
+    along0[l] = closed * batch.c[l];
+    along1[l] = closed * (x * b0 + y * b1 + z * b2) * back;
+    along2[l] = (x * (a0 * x + 2 * (a1 * y + a2 * z)) + y * (a3 * y + 2 * a4 * z) + a5 * z * z) * back2[l];
+    of_length[l] = kOfLength * area[l] * back4[l];
+    const float px = batch.ring[0][0][l], py = batch.ring[0][1][l], pz = batch.ring[0][2][l];
+    const float dx = batch.ring[n - 1][0][l] - px, dy = batch.ring[n - 1][1][l] - py,
+                dz = batch.ring[n - 1][2][l] - pz;
+    const float squared = dx * dx + dy * dy + dz * dz;
+    const float along = -(px * dx + py * dy + pz * dz) / (squared > 0 ? squared : 1.0f);
+    const float t = along > 1 ? 1.0f : along > 0 ? along : 0.0f;
+    const float qx = px + t * dx, qy = py + t * dy, qz = pz + t * dz;
+    const float q = batch.c[l] + qx * ((a0 * qx + a1 * qy + a2 * qz) + 2 * b0) +
+                    qy * ((a1 * qx + a3 * qy + a4 * qz) + 2 * b1) +
+                    qz * ((a2 * qx + a4 * qy + a5 * qz) + 2 * b2);
+    base[l] = closed > 0 || !(q > 0) ? 0.0f : q;
+  }
+  for (std::size_t i = 0; i < n; ++i) VKMESH_LANES(l) w.spoke[i][l] *= back4[l];
+
+  for (std::size_t c = 2; c < n; ++c)
+    for (std::size_t b = 1; b < c; ++b)
+      for (std::size_t a = 0; a < b; ++a) {
+        const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c), abc = triple(a, b, c);
+        const bool is_root = ac == root;
+        VKMESH_LANES(l) {
+          const float px = w.cross[bc][0][l], py = w.cross[bc][1][l], pz = w.cross[bc][2][l];
+          const float nx = w.cross[ab][0][l] + px - w.cross[ac][0][l];
+          const float ny = w.cross[ab][1][l] + py - w.cross[ac][1][l];
+          const float nz = w.cross[ab][2][l] + pz - w.cross[ac][2][l];
+          const float det = w.ring[a][0][l] * px + w.ring[a][1][l] * py + w.ring[a][2][l] * pz;
+          const float x1 = batch.left[ab][l], x2 = batch.left[bc][l], x3 = -batch.left[ac][l];
+          const float size2 = nx * nx + ny * ny + nz * nz;
+          const float sides = w.distance2[ab][l] + w.distance2[bc][l];
+          const float looks = x1 + x2 + x3, least = kDegenerate * sides;
+          const float whole = (x1 > 0 ? x1 : 0.0f) + (x2 > 0 ? x2 : 0.0f) + (x3 > 0 ? x3 : 0.0f);
+          const float height = whole > 0 ? det / whole : 0.0f;
+          const float apart = height * height > rounding2[l] ? height : 0.0f;
+          const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (is_root & (x3 >= 0)));
+          const float value = along0[l] + apart * (2 * along1[l] + apart * along2[l]);
+          const bool has_area = size2 > least * least;
+          w.apart2[abc][l] = apart * apart;
+          w.at_v[abc][l] = holds & (value > 0) ? value : 0.0f;
+          normal[0][l] = nx;
+          normal[1][l] = ny;
+          normal[2][l] = nz;
+          length2[l] = has_area ? size2 : 0.0f;
+          misfit[l] = has_area & (looks * std::fabs(looks) < kSteepest * kSteepest * size2) ? kNone : 0.0f;
+          without[l] = has_area ? 0.0f : kNone;
         }
-      if (is_new(i, j) && least < kNone)
-        least += edge_error(i, j) + kOfLength * area_ * distance2(ring_[i], ring_[j]);
-      best_[i][j] = least;
-      apex_[i][j] = static_cast<std::uint8_t>(apex);
+        const auto turns = [&](std::size_t f) {
+          VKMESH_LANES(l) {
+            const float along = normal[0][l] * w.face[f][0][l] + normal[1][l] * w.face[f][1][l] +
+                                normal[2][l] * w.face[f][2][l];
+            const float before = misfit[l], none = without[l], reliable = w.reliable[f][l];
+            misfit[l] =
+                (length2[l] > 0) & (along * std::fabs(along) < w.limit[f][l] * length2[l]) ? kNone : before;
+            without[l] = none < reliable ? none : reliable;
+          }
+        };
+        if (b == a + 1) turns(a);
+        if (c == b + 1) turns(b);
+        if (is_root) turns(n - 1);
+        VKMESH_LANES(l) w.total[abc][l] = w.at_v[abc][l] + misfit[l] + without[l];
+      }
+
+  // What new edges cost by what they cross.
+  for (std::size_t c = 2; c < n; ++c)
+    for (std::size_t a = 0; a + 1 < c; ++a) {
+      const std::size_t ac = pair(a, c);
+      alignas(64) Lanes inside, outside;
+      VKMESH_LANES(l) inside[l] = outside[l] = 0;
+      for (std::size_t b = a + 1; b < c; ++b)
+        VKMESH_LANES(l) inside[l] += w.spoke[b][l] * w.apart2[triple(a, b, c)][l];
+      for (std::size_t b = 0; b < a; ++b)
+        VKMESH_LANES(l) outside[l] += w.spoke[b][l] * w.apart2[triple(b, a, c)][l];
+      for (std::size_t b = c + 1; b < n; ++b)
+        VKMESH_LANES(l) outside[l] += w.spoke[b][l] * w.apart2[triple(a, c, b)][l];
+      VKMESH_LANES(l) {
+        const float x = batch.left[ac][l];
+        w.crossed[ac][l] = x > 0 ? inside[l] : x < 0 ? outside[l] : 0.0f;
+      }
     }
-  if (!(best_[0][n - 1] < kNone)) return false;
-  take_triangles();
-  find_heirs(quadric);
-  return true;
-}
 
-/// The triangles of the best triangulation, and the errors of its edges.
-void Hole::take_triangles() {
-  count_ = 0;
-  error_ = 0;
-  std::array<std::array<std::uint8_t, 2>, kMost> parts;
-  std::size_t left = 0;
-  parts[left++] = {0, static_cast<std::uint8_t>(size_ - 1)};
-  while (left > 0) {
-    const auto [i, j] = parts[--left];
-    if (is_new(i, j)) error_ += edge_error(i, j);
-    if (j == i + 1) continue;
-    const std::uint8_t l = apex_[i][j];
-    triangles_[count_++] = {i, l, j};
-    parts[left++] = {i, l};
-    parts[left++] = {l, j};
-  }
-}
-
-/// Of v, and the error there.
-void Hole::find_heirs(const QuadricAt& quadric) {
-  const std::size_t n = size_;
-  const auto take = [&](std::size_t neighbour, float share) {
-    if (share > 0) heirs_[heir_count_++] = {static_cast<std::uint8_t>(neighbour), share};
-  };
-  heir_count_ = 0;
-  if (!closed_ && up_[0][n - 1] >= 0) {  // the nearest point of the new boundary edge
-    const Vector &p = ring_[0], &q = ring_[n - 1], d = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-    const float length2 = dot(d, d);
-    const float t = length2 > 0 ? std::clamp(-dot(p, d) / length2, 0.0f, 1.0f) : 0.0f;
-    take(0, 1 - t);
-    take(n - 1, t);
-    error_ += quadric.at({p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]});
-    return;
-  }
-  for (const auto [i, l, j] : triangles()) {
-    if (!contains_v(i, l, j)) continue;
-    const float up = up_[i][l] + up_[l][j] - up_[i][j];
-    take(i, up_[l][j] / up);
-    take(l, -up_[i][j] / up);
-    take(j, up_[i][l] / up);
-    error_ += error_at_v(i, l, j);
-    return;
-  }
-  // v lies on a neighbour.
-  std::size_t nearest = 0;
-  for (std::size_t i = 1; i < n; ++i)
-    if (dot(ring_[i], ring_[i]) < dot(ring_[nearest], ring_[nearest])) nearest = i;
-  take(nearest, 1);
-  error_ += quadric.at(ring_[nearest]);
-}
-
-bool Hole::folds_over() const {
-  float before = 1, after = 1;
-  for (std::size_t i = 0; i + 1 < (closed_ ? size_ + 1 : size_ - 1); ++i)
-    before = std::min(before, cosine(face(i % size_), face((i + 1) % size_)));
-  const auto of = [&](const Triangle& t) { return normal(t[0], t[1], t[2]); };
-  const auto in = [](const Triangle& t, std::uint8_t i) { return t[0] == i || t[1] == i || t[2] == i; };
-  for (std::size_t s = 0; s < count_; ++s)
-    for (std::size_t t = 0; t < s; ++t) {
-      const auto& [i, l, j] = triangles_[s];
-      const Triangle& other = triangles_[t];
-      const int common = (in(other, i) ? 1 : 0) + (in(other, l) ? 1 : 0) + (in(other, j) ? 1 : 0);
-      if (common == 2) after = std::min(after, cosine(of(triangles_[s]), of(other)));
+  // The best of each part between two neighbours.
+  for (std::size_t i = 0; i + 1 < n; ++i) VKMESH_LANES(l) {
+      w.best[pair(i, i + 1)][l] = 0;
+      w.error[pair(i, i + 1)][l] = 0;
     }
-  return after < kAgainst && after < before;
+  for (std::size_t span = 2; span < n; ++span)
+    for (std::size_t a = 0; a + span < n; ++a) {
+      const std::size_t c = a + span, ac = pair(a, c);
+      alignas(64) Lanes least, error;
+      alignas(64) Flags third;
+      VKMESH_LANES(l) {
+        least[l] = kNone;
+        error[l] = 0;
+        third[l] = static_cast<std::int32_t>(a + 1);
+      }
+      for (std::size_t b = a + 1; b < c; ++b) {
+        const std::size_t ab = pair(a, b), bc = pair(b, c), abc = triple(a, b, c);
+        const auto number = static_cast<std::int32_t>(b);
+        VKMESH_LANES(l) {
+          const float sum = w.best[ab][l] + w.best[bc][l] + w.total[abc][l];
+          const float part = w.error[ab][l] + w.error[bc][l] + w.at_v[abc][l];
+          const bool less = sum < least[l];
+          least[l] = less ? sum : least[l];
+          error[l] = less ? part : error[l];
+          third[l] = less ? number : third[l];
+        }
+      }
+      VKMESH_LANES(l) {
+        // The last of a vertex within the surface is an edge that was there.
+        const bool old = (ac == root) & (batch.closed[l] > 0);
+        const float crossed = old ? 0.0f : w.crossed[ac][l];
+        const float by_length = old ? 0.0f : of_length[l] * w.distance2[ac][l];
+        w.best[ac][l] = least[l] + crossed + by_length + batch.barred[ac][l];
+        w.error[ac][l] = error[l] + crossed;
+        batch.third[ac][l] = third[l];
+      }
+    }
+  VKMESH_LANES(l) {
+    const float error = base[l] + w.error[root][l] + illegal[l];
+    batch.error[l] = (w.best[root][l] < kNone) & (error < kNone) ? error : kNone;
+  }
 }
 
 }  // namespace vkmesh::detail

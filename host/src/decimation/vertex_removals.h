@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,129 +29,377 @@ class VertexRemovals {
       : state_(state),
         mesh_(state.mesh),
         vertices_(state.mesh.vertices),
-        queue_(vertices_.size(), vertices_.size()) {}
+        queue_(vertices_.size(), vertices_.size()) {
+    due_.reserve(kStars);
+  }
 
-  static constexpr std::size_t kStep = Queue::kBatch;
+  static constexpr std::size_t kStep = Queue::kExact ? 1 : 512;
 
   /// All vertices with their costs.
   void fill() {
+    std::array<std::uint32_t, kStars> ids;
+    std::array<float, kStars> errors;
+    std::size_t count = 0;
+    const auto flush = [&] {
+      errors.fill(kNone);
+      walk(std::span(ids).first(count), [](std::uint32_t) {});
+      evaluate([&](const Star& star, std::size_t lane) { errors[index_of(star)] = holes_.error[lane]; });
+      for (std::size_t i = 0; i < count; ++i) {  // in the order of the input
+        if (errors[i] < kNone)
+          queue_.fill(ids[i], errors[i]);
+        else
+          park(ids[i], Legality::kFoldOver);
+      }
+      count = 0;
+    };
     for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
       const CollapseVertex& vertex = vertices_[v];
-      if (!vertex.alive() || vertex.has(CollapseVertex::kLocked)) continue;
-      if (evaluate(v))
-        queue_.fill(v, hole_.error());
-      else
-        park(v, Legality::kFoldOver);
+      if (!vertex.alive()) continue;
+      if (vertex.has(CollapseVertex::kLocked)) {
+        ++state_.outcome.rejected[static_cast<std::size_t>(Legality::kLocked)];
+        continue;
+      }
+      ids[count++] = v;
+      if (count == kStars) flush();
     }
+    flush();
     queue_.start();
   }
 
   /// Takes the next of the queue and removes those that are due and may go. False when nothing is left.
   bool step() {
-    std::array<std::uint32_t, Queue::kBatch> taken{};
+    std::array<std::uint32_t, kStars> taken;
     const std::size_t count = queue_.take(taken);
-    prefetch_stars(std::span(taken).first(count));
-    for (std::size_t i = 0; i < count && !state_.reached(); ++i)
-      if (vertices_[taken[i]].alive()) attempt(taken[i]);
+    walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
+    due_.clear();
+    std::array<Removal*, kStars> in_order{};
+    evaluate([&](const Star& star, std::size_t lane) {
+      const float error = holes_.error[lane];
+      if (!(error < kNone))
+        park(star.vertex, Legality::kFoldOver);
+      else if (queue_.is_due(star.vertex, error))
+        in_order[index_of(star)] = &due_.emplace_back(removal_of(star, lane));
+      else
+        queue_.insert(star.vertex, error);
+    });
+    find_existing();
+    for (Removal* const removal : in_order) {
+      if (removal == nullptr) continue;
+      const std::uint32_t v = removal->star->vertex;
+      if (vertices_[v].has(CollapseVertex::kTouched) || state_.reached())
+        queue_.insert_now(v);
+      else
+        attempt(*removal);
+    }
+    for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
+    touched_.clear();
     return count > 0;
   }
 
   /// Whether a vertex that was refused for its error still is.
   [[nodiscard]] bool held_by_error() {
-    for (std::uint32_t v = 0; v < mesh_.apex(); ++v)
-      if (vertices_[v].alive() && vertices_[v].has(CollapseVertex::kHasParked) && evaluate(v) && too_far(v))
-        return true;
-    return false;
+    bool held = false;
+    for (std::uint32_t v = 0; v < mesh_.apex() && !held; ++v) {
+      if (!vertices_[v].alive() || !vertices_[v].has(CollapseVertex::kHasParked)) continue;
+      walk(std::span(&v, 1), [](std::uint32_t) {});
+      evaluate([&](const Star& star, std::size_t lane) {
+        if (!(holes_.error[lane] < kNone)) return;
+        Removal removal = removal_of(star, lane);
+        avoid_existing(removal);
+        held = removal.error < kNone && too_far(v, removal.error);
+      });
+    }
+    return held;
   }
 
  private:
-  /// Walks around v: `edges_` leave it counter-clockwise, and a boundary vertex has the apex at the end of
-  /// the last. False for too many neighbours.
-  bool collect(std::uint32_t v) {
-    std::uint32_t h = vertices_[v].leading;
-    count_ = 0;
-    std::size_t apex = Hole::kMost + 1;
-    const std::uint32_t start = h;
-    do {
-      if (count_ == edges_.size()) return false;
-      const std::uint32_t r = mesh_.target(h);
-      if (r == mesh_.apex()) apex = count_;
-      edges_[count_] = h;
-      ring_[count_++] = r;
-      h = mesh_.around_vertex(h);
-    } while (h != start);
-    closed_ = apex > Hole::kMost;
-    if (closed_) return count_ <= Hole::kMost;
-    const auto turn = static_cast<std::ptrdiff_t>(apex) + 1, all = static_cast<std::ptrdiff_t>(count_);
-    std::rotate(edges_.begin(), edges_.begin() + turn, edges_.begin() + all);
-    std::rotate(ring_.begin(), ring_.begin() + turn, ring_.begin() + all);
-    return true;
-  }
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  static constexpr std::size_t kStars = Queue::kExact ? 1 : 512;
+  static constexpr std::size_t kMost = HoleBatch::kMost;
+  static_assert(CollapseMesh::kMostAtHole >= kMost + 1);
 
-  /// The best that may take v's place, into `hole_`.
-  bool evaluate(std::uint32_t v) {
-    if (!collect(v)) return false;
-    const CollapseVertex& vertex = vertices_[v];
-    const std::size_t neighbours = closed_ ? count_ : count_ - 1;
-    std::array<Hole::Vector, Hole::kMost> ring;
-    for (std::size_t i = 0; i < neighbours; ++i)
-      for (std::size_t k = 0; k < 3; ++k) ring[i][k] = vertices_[ring_[i]].position[k] - vertex.position[k];
-    return hole_.set(std::span(ring).first(neighbours), closed_) &&
-           hole_.fill({vertex.a, vertex.b, vertex.c}, state_.limits.cos_deviation);
-  }
+  /// What leaves a vertex counter-clockwise, and where to. A boundary vertex has the apex at the end of the
+  /// last.
+  struct Star {
+    std::uint32_t vertex, edges;  // edges: how many
+    bool closed;
+    std::array<std::uint32_t, kMost + 1> edge, target;
 
-  void attempt(std::uint32_t v) {
-    if (!evaluate(v)) return park(v, Legality::kFoldOver);
-    if (!queue_.is_due(v, hole_.error())) return queue_.insert(v, hole_.error());
-    if (too_far(v)) return park(v, Legality::kError);
-    // The faces across from v have no such corner already: else what is left would be a triangle on itself.
-    if (count_ == 3 && mesh_.origin(CollapseMesh::previous(beyond(0))) == ring_[2])
-      return park(v, Legality::kLink);
-    while (forbid_existing()) {
-      const CollapseVertex& vertex = vertices_[v];
-      if (!hole_.fill({vertex.a, vertex.b, vertex.c}, state_.limits.cos_deviation))
-        return park(v, Legality::kLink);
-      if (!queue_.is_due(v, hole_.error())) return queue_.insert(v, hole_.error());
-      if (too_far(v)) return park(v, Legality::kError);
+    [[nodiscard]] std::size_t neighbours() const { return closed ? edges : edges - 1; }
+  };
+  using Triangle = std::array<std::uint8_t, 3>;
+  /// With what closes the boundary; each before those beyond its new edges.
+  struct Triangles {
+    std::array<Triangle, kMost> of;
+    std::uint8_t count = 0;
+    [[nodiscard]] std::span<const Triangle> all() const { return std::span(of).first(count); }
+  };
+  /// The neighbours that v's part of the surface falls to, and how much of it to each.
+  struct Heirs {
+    std::array<std::uint8_t, 3> neighbour;
+    std::array<float, 3> share{};
+  };
+  struct Removal {
+    const Star* star;
+    float error;
+    Triangles triangles;
+    Heirs heirs;
+    bool has_existing;  // a new edge that the mesh has already
+  };
+  /// A walk around the end of a new edge, in search of the other.
+  struct Search {
+    std::uint32_t at, stop, other;
+    Removal* removal;
+  };
+
+  /// Walks around these vertices, one step of each in turn: one waits for all. Their stars are stars_, in
+  /// order of their numbers of neighbours; has_too_many(v) is called for those of more than kMost.
+  template <class TooMany>
+  void walk(std::span<const std::uint32_t> ids, TooMany&& has_too_many) {
+    std::array<std::uint32_t, kStars> at, start, who;
+    for (const std::uint32_t v : ids) prefetch(&vertices_[v]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      at[i] = start[i] = vertices_[ids[i]].leading;
+      who[i] = static_cast<std::uint32_t>(i);
+      prefetch(&mesh_.face(at[i]));
+      walked_[i].vertex = ids[i];
+      walked_[i].closed = true;
     }
-    if (hole_.folds_over()) return park(v, Legality::kFoldOver);
-    remove(v);
+    std::size_t left = ids.size();
+    for (std::uint32_t step = 0; step <= kMost && left > 0; ++step) {
+      const std::size_t now = left;
+      left = 0;
+      for (std::size_t i = 0; i < now; ++i) {
+        const std::uint32_t h = at[i], out = mesh_.around_vertex(h), v = mesh_.target(h);
+        Star& star = walked_[who[i]];
+        prefetch(&vertices_[v]);
+        prefetch(&mesh_.face(out));
+        star.edge[step] = h;
+        star.target[step] = v;
+        star.edges = step + 1;
+        star.closed &= v != mesh_.apex();
+        at[left] = out;
+        start[left] = start[i];
+        who[left] = who[i];
+        left += out != start[i] ? 1 : 0;
+      }
+    }
+    for (std::size_t i = 0; i < left; ++i) walked_[who[i]].edges = kTooMany;
+    std::array<std::uint32_t, kMost + 2> first{};
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      Star& star = walked_[i];
+      if (star.edges == kTooMany || star.neighbours() > kMost) {
+        star.edges = kTooMany;
+        has_too_many(star.vertex);
+        continue;
+      }
+      if (!star.closed) put_apex_last(star);
+      ++first[star.neighbours() + 1];
+    }
+    for (std::size_t n = 1; n < first.size(); ++n) first[n] += first[n - 1];
+    first_ = first;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      if (walked_[i].edges != kTooMany)
+        order_[first[walked_[i].neighbours()]++] = static_cast<std::uint32_t>(i);
   }
 
-  [[nodiscard]] bool too_far(std::uint32_t v) const {
-    return static_cast<double>(hole_.error()) >
-           state_.limits.error2 * static_cast<double>(vertices_[v].weight);
+  /// Of a star among the vertices that were walked around.
+  [[nodiscard]] std::size_t index_of(const Star& star) const {
+    return static_cast<std::size_t>(&star - walked_.data());
+  }
+
+  void put_apex_last(Star& star) const {
+    const auto end = star.target.begin() + star.edges;
+    const auto turn = std::find(star.target.begin(), end, mesh_.apex()) - star.target.begin() + 1;
+    std::rotate(star.target.begin(), star.target.begin() + turn, end);
+    std::rotate(star.edge.begin(), star.edge.begin() + turn, star.edge.begin() + star.edges);
+  }
+
+  /// Calls use(star, lane) for all stars that were walked, with their holes filled in that lane of holes_.
+  template <class Use>
+  void evaluate(Use&& use) {
+    for (std::size_t n = 1; n <= kMost; ++n)
+      for (std::size_t from = first_[n]; from < first_[n + 1]; from += HoleBatch::kLanes) {
+        const std::size_t count = std::min<std::size_t>(first_[n + 1] - from, HoleBatch::kLanes);
+        for (std::size_t lane = 0; lane < count; ++lane) set(holes_, lane, walked_[order_[from + lane]]);
+        fill_holes(holes_, n, state_.limits.cos_deviation);
+        for (std::size_t lane = 0; lane < count; ++lane) use(walked_[order_[from + lane]], lane);
+      }
+  }
+
+  void set(HoleBatch& holes, std::size_t lane, const Star& star) const {
+    const CollapseVertex& v = vertices_[star.vertex];
+    for (std::size_t i = 0; i < star.neighbours(); ++i) {
+      const auto& r = vertices_[star.target[i]].position;
+      for (std::size_t k = 0; k < 3; ++k) holes.ring[i][k][lane] = r[k] - v.position[k];
+    }
+    for (std::size_t k = 0; k < 6; ++k) holes.a[k][lane] = v.a[k];
+    for (std::size_t k = 0; k < 3; ++k) holes.b[k][lane] = v.b[k];
+    holes.c[lane] = v.c;
+    holes.closed[lane] = star.closed ? 1.0f : 0.0f;
+  }
+
+  /// Calls use(a, b) for the neighbours at the ends of each new edge.
+  template <class Use>
+  static void for_new_edges(const Star& star, const Triangles& triangles, Use&& use) {
+    for (const auto& [a, b, c] : triangles.all()) {
+      if (b > a + 1) use(a, b);
+      if (c > b + 1 && c < star.neighbours()) use(b, c);
+    }
+  }
+
+  /// Sets has_existing of all that are due, by walks around one end of each new edge, one step of each in
+  /// turn.
+  void find_existing() {
+    searches_.clear();
+    for (Removal& removal : due_) {
+      const Star& star = *removal.star;
+      for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {
+        const std::uint32_t at = beyond(star, a > 0 ? a - 1 : star.edges - 1);
+        prefetch(&mesh_.face(at));
+        searches_.push_back({at, CollapseMesh::next(star.edge[a]), star.target[b], &removal});
+      });
+    }
+    std::size_t left = searches_.size();
+    for (std::size_t step = 0; step < kSearched && left > 0; ++step) {
+      const std::size_t now = left;
+      left = 0;
+      for (std::size_t i = 0; i < now; ++i) {
+        Search search = searches_[i];
+        const bool found = mesh_.target(search.at) == search.other;
+        search.removal->has_existing |= found;
+        search.at = mesh_.around_vertex(search.at);
+        prefetch(&mesh_.face(search.at));
+        searches_[left] = search;
+        left += !found && search.at != search.stop ? 1 : 0;
+      }
+    }
+    for (const Search& search : std::span(searches_).first(left))
+      search.removal->has_existing |= has_edge(mesh_.origin(search.stop), search.other);
+  }
+
+  /// Removes a vertex, if that is legal.
+  void attempt(Removal& removal) {
+    const Star& star = *removal.star;
+    const std::uint32_t v = star.vertex;
+    if (too_far(v, removal.error)) return park(v, Legality::kError);
+    // The faces across from v are one already: what is left would be a triangle on itself.
+    if (star.edges == 3 && (beyond(star, 0) >> 2) == (beyond(star, 1) >> 2)) return park(v, Legality::kLink);
+    for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
+      const std::uint32_t p = star.target[a], q = star.target[b];
+      if (vertices_[p].has(CollapseVertex::kTouched) && vertices_[q].has(CollapseVertex::kTouched))
+        removal.has_existing |= has_edge(p, q);
+    });
+    if (removal.has_existing) {
+      avoid_existing(removal);
+      if (!(removal.error < kNone)) return park(v, Legality::kLink);
+      if (!queue_.is_due(v, removal.error)) return queue_.insert(v, removal.error);
+      if (too_far(v, removal.error)) return park(v, Legality::kError);
+    }
+    if (folds_over(star, removal.triangles)) return park(v, Legality::kFoldOver);
+    remove(removal);
+  }
+
+  /// Fills the hole again, without the edges that the mesh has already.
+  void avoid_existing(Removal& removal) {
+    const Star& star = *removal.star;
+    set(other_, 0, star);
+    while (bar_existing(star, removal.triangles)) {
+      fill_holes(other_, star.neighbours(), state_.limits.cos_deviation);
+      removal.error = other_.error[0];
+      if (!(removal.error < kNone)) break;
+      removal.triangles = triangles_of(other_, 0, star);
+      removal.heirs = heirs_of(other_, 0, star);
+    }
+    for (auto& barred : other_.barred) barred[0] = 0;
+  }
+
+  [[nodiscard]] bool too_far(std::uint32_t v, float error) const {
+    return static_cast<double>(error) > state_.limits.error2 * static_cast<double>(vertices_[v].weight);
   }
 
   /// Beyond the face between neighbour i and the next.
-  [[nodiscard]] std::uint32_t beyond(std::size_t i) const {
-    return mesh_.twin(CollapseMesh::next(edges_[i]));
+  [[nodiscard]] std::uint32_t beyond(const Star& star, std::size_t i) const {
+    return mesh_.twin(CollapseMesh::next(star.edge[i]));
   }
 
-  /// Forbids each new edge that the mesh has already; whether there was one.
-  bool forbid_existing() {
-    bool found = false;
-    const auto look = [&](std::size_t i, std::size_t j) {
-      if (!hole_.is_new(i, j)) return;
-      if (!has_edge(ring_[i], ring_[j])) return;
-      hole_.forbid(i, j);
-      found = true;
-    };
-    for (const auto [i, l, j] : hole_.triangles()) {
-      look(i, l);
-      look(l, j);
-      look(i, j);
+  [[nodiscard]] Removal removal_of(const Star& star, std::size_t lane) const {
+    return {&star, holes_.error[lane], triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false};
+  }
+
+  [[nodiscard]] static Triangles triangles_of(const HoleBatch& holes, std::size_t lane, const Star& star) {
+    Triangles triangles;
+    std::array<std::array<std::uint8_t, 2>, kMost> parts;
+    std::size_t left = 0;
+    const auto last = static_cast<std::uint8_t>(star.neighbours() - 1);
+    if (!star.closed) triangles.of[triangles.count++] = {0, last, static_cast<std::uint8_t>(last + 1)};
+    if (last > 1) parts[left++] = {0, last};
+    while (left > 0) {
+      const auto [a, c] = parts[--left];
+      const auto b = static_cast<std::uint8_t>(holes.third[HoleBatch::pair(a, c)][lane]);
+      triangles.of[triangles.count++] = {a, b, c};
+      if (b > a + 1) parts[left++] = {a, b};
+      if (c > b + 1) parts[left++] = {b, c};
     }
+    return triangles;
+  }
+
+  /// Bars each new edge that the mesh has already in other_; whether there was one.
+  bool bar_existing(const Star& star, const Triangles& triangles) {
+    bool found = false;
+    for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) {
+      if (!has_edge(star.target[a], star.target[b])) return;
+      other_.barred[HoleBatch::pair(a, b)][0] = kNone;
+      found = true;
+    });
     return found;
   }
+  /// Around both ends at once: one may have many edges.
   [[nodiscard]] bool has_edge(std::uint32_t p, std::uint32_t q) const {
-    const std::uint32_t start = vertices_[p].leading;
-    std::uint32_t h = start;
+    const std::uint32_t p0 = vertices_[p].leading, q0 = vertices_[q].leading;
+    std::uint32_t at_p = p0, at_q = q0;
     do {
-      if (mesh_.target(h) == q) return true;
-      h = mesh_.around_vertex(h);
-    } while (h != start);
+      if (mesh_.target(at_p) == q || mesh_.target(at_q) == p) return true;
+      at_p = mesh_.around_vertex(at_p);
+      at_q = mesh_.around_vertex(at_q);
+    } while (at_p != p0 && at_q != q0);
     return false;
+  }
+
+  using Vector = std::array<float, 3>;
+  [[nodiscard]] Vector normal(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const Vector &p = vertices_[a].position, &q = vertices_[b].position, &r = vertices_[c].position;
+    const Vector s = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, t = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+    return {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
+  }
+  [[nodiscard]] static float cosine(const Vector& a, const Vector& b) {
+    const auto dot = [](const Vector& x, const Vector& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
+    const float lengths = std::sqrt(dot(a, a)) * std::sqrt(dot(b, b));
+    return lengths > 0 ? dot(a, b) / lengths : 1.0f;
+  }
+
+  /// Whether two neighbouring triangles stand against each other by more than 120 degrees and by more than
+  /// any did before.
+  [[nodiscard]] bool folds_over(const Star& star, const Triangles& triangles) const {
+    constexpr float kAgainst = -0.5f;
+    const std::size_t n = star.neighbours();
+    std::array<Vector, kMost> normals;
+    std::array<std::array<std::uint8_t, kMost>, kMost> below;  // by a new edge the triangle before it
+    float after = 1;
+    for (std::size_t t = star.closed ? 0 : 1; t < triangles.count; ++t) {
+      const auto& [a, b, c] = triangles.of[t];
+      normals[t] = normal(star.target[a], star.target[b], star.target[c]);
+      if (a != 0 || c + 1u != n) after = std::min(after, cosine(normals[t], normals[below[a][c]]));
+      below[a][b] = below[b][c] = static_cast<std::uint8_t>(t);
+    }
+    if (after >= kAgainst) return false;
+    const auto face = [&](std::size_t i) {
+      return normal(star.vertex, star.target[i % n], star.target[(i + 1) % n]);
+    };
+    float before = 1;
+    for (std::size_t i = 0; i + (star.closed ? 0 : 2) < n; ++i)
+      before = std::min(before, cosine(face(i), face(i + 1)));
+    return after < before;
   }
 
   void park(std::uint32_t v, Legality why) {
@@ -157,39 +407,72 @@ class VertexRemovals {
     vertices_[v].source |= CollapseVertex::kHasParked;
   }
 
-  void remove(std::uint32_t v) {
-    CollapseVertex& gone = vertices_[v];
-    const auto heirs = hole_.heirs();
-    for (const auto [neighbour, share] : heirs) absorb(vertices_[ring_[neighbour]], gone, share);
-    const auto most = std::max_element(heirs.begin(), heirs.end(),
-                                       [](const auto& a, const auto& b) { return a.share < b.share; });
-    const std::uint32_t heir = ring_[most->neighbour];
+  void remove(const Removal& removal) {
+    const Star& star = *removal.star;
+    CollapseVertex& gone = vertices_[star.vertex];
+    std::uint32_t heir = 0;
+    float most = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float share = removal.heirs.share[i];
+      if (!(share > 0)) continue;
+      const std::uint32_t r = star.target[removal.heirs.neighbour[i]];
+      if (share > most) heir = r;
+      most = std::max(most, share);
+      absorb(vertices_[r], gone, share);
+    }
     if (gone.weight > 0)
       state_.outcome.error2 = std::max(state_.outcome.error2,
-                                       static_cast<double>(hole_.error()) / static_cast<double>(gone.weight));
-
-    std::array<Hole::Triangle, Hole::kMost + 1> triangles;
-    std::size_t filled = hole_.triangles().size();
-    std::copy_n(hole_.triangles().begin(), filled, triangles.begin());
-    if (!closed_)
-      triangles[filled++] = {0, static_cast<std::uint8_t>(count_ - 2), static_cast<std::uint8_t>(count_ - 1)};
-    const auto faces = mesh_.fill_hole(std::span(edges_).first(count_), std::span(triangles).first(filled));
+                                       static_cast<double>(removal.error) / static_cast<double>(gone.weight));
+    const auto faces = mesh_.fill_hole(std::span(star.edge).first(star.edges), removal.triangles.all());
     gone.leading = CollapseVertex::kGone | heir;
     if (state_.keep_events)
       state_.outcome.events.push_back({vertices_[heir].source & CollapseVertex::kSourceMask,
                                        gone.source & CollapseVertex::kSourceMask, vertices_[heir].position,
                                        false, faces});
-    state_.faces -= closed_ ? 2 : 1;
+    state_.faces -= star.closed ? 2 : 1;
     --state_.vertices;
     ++state_.outcome.collapses;
-    touched_.assign(ring_.begin(),
-                    ring_.begin() + static_cast<std::ptrdiff_t>(closed_ ? count_ : count_ - 1));
-    for (const std::uint32_t r : touched_) {
-      if (vertices_[r].has(CollapseVertex::kHasParked)) {
-        vertices_[r].source &= ~CollapseVertex::kHasParked;
+    for (const std::uint32_t r : std::span(star.target).first(star.neighbours())) {
+      CollapseVertex& vertex = vertices_[r];
+      if (vertex.has(CollapseVertex::kHasParked) || (Queue::kExact && !vertex.has(CollapseVertex::kLocked)))
         queue_.insert_now(r);
-      } else if (Queue::kExact && !vertices_[r].has(CollapseVertex::kLocked)) {
-        queue_.insert_now(r);
+      vertex.source = (vertex.source & ~CollapseVertex::kHasParked) | CollapseVertex::kTouched;
+      touched_.push_back(r);
+    }
+  }
+
+  /// The corners of the triangle that holds v, by v's place in it; on the boundary the ends of the new edge,
+  /// by the point nearest to v.
+  [[nodiscard]] Heirs heirs_of(const HoleBatch& holes, std::size_t lane, const Star& star) const {
+    std::size_t a = 0, c = star.neighbours() - 1;
+    Heirs heirs{{0, static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c)}};
+    if (!star.closed) {
+      float along = 0, squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float d = holes.ring[c][k][lane] - holes.ring[0][k][lane];
+        along -= holes.ring[0][k][lane] * d;
+        squared += d * d;
+      }
+      const float t = squared > 0 ? std::clamp(along / squared, 0.0f, 1.0f) : 0.0f;
+      heirs.share = {1 - t, t, 0};
+      return heirs;
+    }
+    while (true) {
+      const std::size_t ac = HoleBatch::pair(a, c);
+      const auto b = static_cast<std::size_t>(holes.third[ac][lane]);
+      const float at_a = holes.left[HoleBatch::pair(b, c)][lane],
+                  at_c = holes.left[HoleBatch::pair(a, b)][lane];
+      if (at_c < 0) {
+        c = b;
+      } else if (at_a < 0) {
+        a = b;
+      } else {
+        const float at_b = std::max(-holes.left[ac][lane], 0.0f), sum = at_a + at_b + at_c;
+        heirs.neighbour = {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
+                           static_cast<std::uint8_t>(c)};
+        heirs.share = {1, 0, 0};
+        if (sum > 0) heirs.share = {at_a / sum, at_b / sum, at_c / sum};
+        return heirs;
       }
     }
   }
@@ -205,31 +488,20 @@ class VertexRemovals {
     heir.weight += share * gone.weight;
   }
 
-  // Each step for all, so that one waits for all.
-  void prefetch_stars(std::span<const std::uint32_t> taken) {
-    for (const std::uint32_t v : taken) prefetch(&vertices_[v]);
-    for (const std::uint32_t v : taken)
-      if (vertices_[v].alive()) prefetch(&mesh_.face(vertices_[v].leading));
-    walk_.clear();
-    for (const std::uint32_t v : taken)
-      if (vertices_[v].alive()) walk_.push_back(vertices_[v].leading);
-    for (int step = 0; step < 6; ++step)
-      for (std::uint32_t& h : walk_) {
-        prefetch(&vertices_[mesh_.target(h)]);
-        h = mesh_.around_vertex(h);
-        prefetch(&mesh_.face(h));
-      }
-  }
+  static constexpr std::uint32_t kTooMany = ~0u;
+  static constexpr std::size_t kSearched = 32;
 
   DecimationState& state_;
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
   Queue queue_;
-  Hole hole_;
-  std::array<std::uint32_t, Hole::kMost + 1> edges_, ring_;
-  std::size_t count_ = 0;
-  bool closed_ = false;
-  std::vector<std::uint32_t> walk_, touched_;
+  std::array<Star, kStars> walked_;
+  std::array<std::uint32_t, kStars> order_;
+  std::array<std::uint32_t, kMost + 2> first_{};  // of each number of neighbours, in order_
+  HoleBatch holes_, other_;
+  std::vector<Removal> due_;
+  std::vector<Search> searches_;
+  std::vector<std::uint32_t> touched_;
 };
 
 }  // namespace vkmesh::detail

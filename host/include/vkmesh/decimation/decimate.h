@@ -182,7 +182,7 @@ using Decimated = BasicDecimated<Vec3>;
 /// Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes" (1992), with the best of all
 /// triangulations of the hole: that from which the old surface lies least far, where both are seen along the
 /// normal of the vertex. It makes no edge that exists, and gives the planes of the vertex to the corners of
-/// the triangle below it, each its barycentric share. A vertex of more than 32 neighbours stays until it has
+/// the triangle below it, each its barycentric share. A vertex of more than 16 neighbours stays until it has
 /// fewer.
 ///
 /// Order: with optimal placement the error of an edge only rises, so edges lie in a MonotoneQueue under lower
@@ -214,10 +214,11 @@ using Decimated = BasicDecimated<Vec3>;
 ///
 /// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
 /// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
-/// O(n log n) for midpoints, else about O(n). Memory: about 140 bytes a vertex, 176 for midpoints, and 12
-/// more where the input's order has no locality and is replaced by one along a Morton curve; with attributes
-/// about 120 more, and 20 for each component. Isolated vertices are dropped. Errors: kUnsuitable unless
-/// triangles, finite and manifold; kUsage for options outside their range; kInterrupted; kOutOfMemory.
+/// O(n log n) for midpoints, else about O(n). Memory: less than 160 bytes a vertex with a result of a tenth,
+/// 36 more for midpoints, and 28 more where the input's order has no locality and is replaced by one along a
+/// Morton curve; with attributes about 120 more, and 20 for each component. Isolated vertices are dropped.
+/// Errors: kUnsuitable unless triangles, finite and manifold; kUsage for options outside their range;
+/// kInterrupted; kOutOfMemory.
 [[nodiscard]] Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                                          const DecimateOptions& options, const Progress& progress = {});
 [[nodiscard]] Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,

@@ -20,8 +20,11 @@ namespace vkmesh {
 class MonotoneQueue {
  public:
   MonotoneQueue() = default;
-  /// Room for this many entries is made at once.
-  explicit MonotoneQueue(std::size_t capacity) { words_.reserve((capacity / (kChunk - 1) + 64) * kChunk); }
+  /// Room for this many entries is made at once, in full chunks and one more for each of a usual number of
+  /// buckets.
+  explicit MonotoneQueue(std::size_t capacity) {
+    words_.reserve((capacity / (kChunk - 1) + kUsualBuckets) * kChunk);
+  }
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -68,6 +71,8 @@ class MonotoneQueue {
   static constexpr std::size_t kBuckets = std::size_t{1} << (31 - kShift);
   /// Words of a chunk, of which the first tells where the ids of the bucket's chunk before it end.
   static constexpr std::uint32_t kChunk = 64;
+  /// 64 octaves.
+  static constexpr std::size_t kUsualBuckets = 1024;
 
   void insert_in(std::uint32_t b, std::uint32_t id) {
     std::uint32_t end = ends_[b];

@@ -1,0 +1,405 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/decimation/decimate.h>
+#include <vkmesh/vec.h>
+
+#include "decimation/hole.h"
+#include "support/shapes.h"
+
+namespace vkmesh {
+namespace {
+
+using detail::HoleBatch;
+
+Decimated run(const IndexedFaceSet& mesh, DecimateOptions options) {
+  options.operation = DecimateOperation::kVertexRemoval;
+  auto result = decimate(test::half_edges(mesh), mesh.points, options);
+  if (!result) FAIL(result.error().describe());
+  REQUIRE(validate(result->mesh));
+  return std::move(*result);
+}
+
+DVec3 cross(const DVec3& a, const DVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(const DVec3& a, const DVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+double length(const DVec3& a) {
+  return std::sqrt(dot(a, a));
+}
+
+using Triangle = std::array<std::size_t, 3>;
+using Triangulation = std::vector<Triangle>;
+
+/// All of the polygon with corners first..last.
+std::vector<Triangulation> all_triangulations(std::size_t first, std::size_t last) {
+  if (last == first + 1) return {{}};
+  std::vector<Triangulation> all;
+  for (std::size_t middle = first + 1; middle < last; ++middle)
+    for (const Triangulation& left : all_triangulations(first, middle))
+      for (const Triangulation& right : all_triangulations(middle, last)) {
+        Triangulation both = left;
+        both.insert(both.end(), right.begin(), right.end());
+        both.push_back({first, middle, last});
+        all.push_back(std::move(both));
+      }
+  return all;
+}
+
+/// A vertex at the origin, its neighbours and the planes it stands for, in double.
+struct Star {
+  std::vector<DVec3> ring;
+  bool closed = true;
+  struct Plane {
+    DVec3 normal;
+    double offset, weight;
+  };
+  std::vector<Plane> planes;
+
+  [[nodiscard]] std::size_t size() const { return ring.size(); }
+  [[nodiscard]] std::size_t faces() const { return closed ? size() : size() - 1; }
+  [[nodiscard]] DVec3 face(std::size_t i) const { return cross(ring[i], ring[(i + 1) % size()]); }
+  [[nodiscard]] DVec3 up() const {
+    DVec3 sum{0.0};
+    for (std::size_t i = 0; i < faces(); ++i) sum += face(i);
+    return sum / length(sum);
+  }
+  [[nodiscard]] double area() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < faces(); ++i) sum += length(face(i)) / 2;
+    return sum;
+  }
+  [[nodiscard]] double quadric(const DVec3& x) const {
+    double sum = 0;
+    for (const Plane& p : planes) {
+      const double d = dot(p.normal, x) - p.offset;
+      sum += p.weight * d * d;
+    }
+    return sum;
+  }
+};
+
+/// Coordinates in which the star's normal is the third axis.
+struct Seen {
+  DVec3 x, y, z;
+  explicit Seen(const DVec3& up) : z(up) {
+    x = cross(std::fabs(up.x) < 0.5 ? DVec3(1, 0, 0) : DVec3(0, 1, 0), up);
+    x /= length(x);
+    y = cross(up, x);
+  }
+  [[nodiscard]] DVec3 operator()(const DVec3& p) const { return {dot(x, p), dot(y, p), dot(z, p)}; }
+};
+
+/// Twice the area of the shadow.
+double shadow(const DVec3& a, const DVec3& b, const DVec3& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// The error of a triangulation, from where lines cross each other in the shadow; infinite when it is not
+/// legal. `margin` becomes how near anything came to deciding otherwise.
+double error_of(const Star& star, const Triangulation& triangles, double cos_deviation, double& margin) {
+  const std::size_t n = star.size();
+  const Seen seen(star.up());
+  std::vector<DVec3> p;
+  for (const DVec3& r : star.ring) p.push_back(seen(r));
+  bool legal = true;
+  const auto require = [&](double value) {
+    margin = std::min(margin, std::fabs(value));
+    legal = legal && value > 0;
+  };
+  double error = 0;
+  const DVec3 v{0.0};
+  for (const auto& [a, b, c] : triangles) {
+    const DVec3 normal = cross(star.ring[b] - star.ring[a], star.ring[c] - star.ring[a]);
+    require(shadow(p[a], p[b], p[c]) / length(normal) - 0.05);
+    for (const auto& [i, j] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      if ((i + 1) % n == j && i < star.faces())
+        require(dot(normal, star.face(i)) / (length(normal) * length(star.face(i))) - cos_deviation);
+    const double va = shadow(v, p[b], p[c]), vb = shadow(v, p[c], p[a]), vc = shadow(v, p[a], p[b]);
+    margin = std::min({margin, std::fabs(va), std::fabs(vb), std::fabs(vc)});
+    if (va > 0 && vb > 0 && vc > 0) {
+      const DVec3 below = star.up() * ((va * p[a].z + vb * p[b].z + vc * p[c].z) / (va + vb + vc));
+      if (star.closed) {
+        error += star.quadric(below);
+      } else {  // planes through v: where v itself goes is told by the new boundary edge
+        for (const Star::Plane& plane : star.planes)
+          error += plane.weight * dot(plane.normal, below) * dot(plane.normal, below);
+      }
+    }
+    // Each of the mesh's new edges once: as the last edge of the triangle on one side.
+    if (!(c > a + 1 && !(star.closed && a == 0 && c + 1 == n))) continue;
+    for (std::size_t s = 0; s < n; ++s) {
+      if (s == a || s == c) continue;
+      // v + t (s - v) = a + u (c - a).
+      const DVec3 d = p[c] - p[a];
+      const double det = p[s].x * d.y - p[s].y * d.x;
+      const double t = (p[a].x * d.y - p[a].y * d.x) / det, u = (p[a].x * p[s].y - p[a].y * p[s].x) / det;
+      if (!(t > 0 && t < 1 && u > 0 && u < 1)) continue;
+      const double apart = t * p[s].z - (p[a].z + u * d.z);
+      double weight = 0;
+      if (star.closed || s + 1 < n) weight += length(star.face(s)) / 4;
+      if (star.closed || s > 0) weight += length(star.face((s + n - 1) % n)) / 4;
+      error += weight * apart * apart;
+    }
+  }
+  if (!star.closed) {
+    const DVec3 &p0 = star.ring[0], d = star.ring[n - 1] - p0;
+    error += star.quadric(p0 + d * std::clamp(-dot(p0, d) / dot(d, d), 0.0, 1.0));
+  }
+  return legal ? error : std::numeric_limits<double>::infinity();
+}
+
+void put(const Star& star, std::size_t lane, HoleBatch& batch) {
+  for (std::size_t i = 0; i < star.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      batch.ring[i][static_cast<std::size_t>(k)][lane] = static_cast<float>(star.ring[i][k]);
+  std::array<double, 6> a{};
+  std::array<double, 3> b{};
+  double c = 0;
+  for (const auto& [m, d, w] : star.planes) {
+    const std::array<double, 6> products = {m.x * m.x, m.x * m.y, m.x * m.z, m.y * m.y, m.y * m.z, m.z * m.z};
+    for (std::size_t k = 0; k < 6; ++k) a[k] += w * products[k];
+    for (int k = 0; k < 3; ++k) b[static_cast<std::size_t>(k)] -= w * d * m[k];
+    c += w * d * d;
+  }
+  for (std::size_t k = 0; k < 6; ++k) batch.a[k][lane] = static_cast<float>(a[k]);
+  for (std::size_t k = 0; k < 3; ++k) batch.b[k][lane] = static_cast<float>(b[k]);
+  batch.c[lane] = static_cast<float>(c);
+  batch.closed[lane] = star.closed ? 1.0f : 0.0f;
+}
+
+Triangulation triangulation_in(const HoleBatch& batch, std::size_t lane, std::size_t first,
+                               std::size_t last) {
+  if (last == first + 1) return {};
+  const auto middle = static_cast<std::size_t>(batch.third[HoleBatch::pair(first, last)][lane]);
+  Triangulation all = triangulation_in(batch, lane, first, middle);
+  const Triangulation right = triangulation_in(batch, lane, middle, last);
+  all.insert(all.end(), right.begin(), right.end());
+  all.push_back({first, middle, last});
+  return all;
+}
+
+/// A star about the third axis, then turned; its planes are those of its faces and some others.
+Star random_star(std::size_t n, bool closed, std::mt19937& random) {
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  Star star;
+  star.closed = closed;
+  const double whole = closed ? 2 * std::numbers::pi : uniform(1.5, 5.5);
+  const double steps = static_cast<double>(closed ? n : n - 1);
+  const DVec3 tilt(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+  const Seen turn(tilt / length(tilt));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = (static_cast<double>(i) + uniform(-0.3, 0.3)) * whole / steps, r = uniform(0.6, 1.4);
+    const DVec3 p = r * DVec3(std::cos(angle), std::sin(angle), uniform(-0.5, 0.5));
+    const DVec3 turned = p.x * turn.x + p.y * turn.y + p.z * turn.z;
+    star.ring.emplace_back(Vec3(turned));  // what a float holds
+  }
+  for (std::size_t i = 0; i < star.faces(); ++i)
+    star.planes.push_back({star.face(i) / length(star.face(i)), 0, length(star.face(i)) / 2});
+  const DVec3 up = star.up();
+  star.planes.push_back({up, uniform(-0.1, 0.1), uniform(0, 1)});
+  return star;
+}
+
+}  // namespace
+
+TEST_CASE("decimation: a hole is filled with the best of all triangulations", "[decimate]") {
+  std::mt19937 random(5);
+  HoleBatch batch;
+  std::size_t compared = 0, impossible = 0;
+  for (std::size_t n = 3; n <= 8; ++n) {
+    const std::vector<Triangulation> all = all_triangulations(0, n - 1);
+    for (int round = 0; round < 60; ++round) {
+      std::vector<Star> stars;
+      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+        stars.push_back(random_star(n, random() % 3 != 0, random));
+        put(stars.back(), lane, batch);
+      }
+      const double cos_deviation = round % 2 == 0 ? 0.25 : 0.8;
+      detail::fill_holes(batch, n, static_cast<float>(cos_deviation));
+      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+        const Star& star = stars[lane];
+        double margin = 1;
+        const Seen seen(star.up());
+        bool looks_up = true;
+        for (std::size_t i = 0; i < star.faces(); ++i) {
+          const double area = shadow(DVec3(0.0), seen(star.ring[i]), seen(star.ring[(i + 1) % n]));
+          margin = std::min(margin, std::fabs(area));
+          looks_up = looks_up && area > 0;
+        }
+        double least = std::numeric_limits<double>::infinity();
+        for (const Triangulation& triangulation : all)
+          least = std::min(least, error_of(star, triangulation, cos_deviation, margin));
+        if (margin < 1e-4) continue;  // rounding of floats may decide otherwise
+        ++compared;
+        INFO(n << " neighbours, closed " << star.closed << ", round " << round << ", lane " << lane);
+        if (!looks_up || std::isinf(least)) {
+          CHECK(std::isinf(batch.error[lane]));
+          ++impossible;
+          continue;
+        }
+        // Some hundred roundings of numbers of about 1, and what the lengths of n edges of up to 3 may
+        // decide.
+        const double rounding = 200.0 / (1 << 24),
+                     by_length = 1e-7 * star.area() * 9 * static_cast<double>(n);
+        CHECK(batch.error[lane] >= least - rounding);
+        CHECK(batch.error[lane] <= least + rounding + by_length);
+        const double found = error_of(star, triangulation_in(batch, lane, 0, n - 1), cos_deviation, margin);
+        CHECK(batch.error[lane] == Approx(found).margin(rounding));
+      }
+    }
+  }
+  CHECK(compared > 3000);
+  CHECK(impossible > 100);
+  CHECK(compared - impossible > 1500);
+}
+
+TEST_CASE("decimation: an edge that is barred is not made, and a lane knows nothing of its neighbours",
+          "[decimate]") {
+  std::mt19937 random(8);
+  for (std::size_t n = 4; n <= 9; ++n) {
+    std::vector<Star> stars;
+    HoleBatch one, other;
+    for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      stars.push_back(random_star(n, lane % 3 != 0, random));
+      put(stars[lane], lane, one);
+      put(stars[lane], HoleBatch::kLanes - 1 - lane, other);
+    }
+    detail::fill_holes(one, n, -0.99f);
+    detail::fill_holes(other, n, -0.99f);
+    for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      const std::size_t mirrored = HoleBatch::kLanes - 1 - lane;
+      CHECK(one.error[lane] == other.error[mirrored]);
+      const Triangulation found = triangulation_in(one, lane, 0, n - 1);
+      CHECK(found == triangulation_in(other, mirrored, 0, n - 1));
+      for (const auto& [a, b, c] : found)
+        if (c > a + 1 && !(a == 0 && c + 1 == n)) other.barred[HoleBatch::pair(a, c)][mirrored] = HUGE_VALF;
+    }
+    detail::fill_holes(other, n, -0.99f);
+    for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      const std::size_t mirrored = HoleBatch::kLanes - 1 - lane;
+      CHECK(other.error[mirrored] >= one.error[lane] * (1 - 1e-5f));
+      if (!(other.error[mirrored] < HUGE_VALF)) continue;
+      for (const auto& [a, b, c] : triangulation_in(other, mirrored, 0, n - 1))
+        CHECK(other.barred[HoleBatch::pair(a, c)][mirrored] == 0);
+    }
+  }
+}
+
+TEST_CASE("decimation: vertex removal makes no edge that is there, and takes the next best", "[decimate]") {
+  // A pyramid whose base is bent along the edge from 0 to 2, which lies nearest to its top.
+  IndexedFaceSet mesh;
+  mesh.points = {{1, 0, 0}, {0, 1, 0.5f}, {-1, 0, 0}, {0, -1, 0.5f}, {0, 0, 0.1f}};
+  mesh.corners = {4, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 0, 2, 1, 0, 3, 2};
+  DecimateOptions options;
+  options.locked_vertices = {0, 1, 2, 3};
+  options.max_normal_deviation = 1.5;
+  const Decimated result = run(mesh, options);
+  REQUIRE(result.collapses == 1);
+  REQUIRE(result.mesh.face_count() == 4);
+  std::size_t edges = 0;
+  for (std::uint32_t h = 0; h < result.mesh.half_edge_count(); ++h) {
+    const std::uint32_t from = result.mesh.origin(HalfEdgeId(h)).index,
+                        to = result.mesh.target(HalfEdgeId(h)).index;
+    edges += from % 2 == to % 2 ? 1 : 0;
+  }
+  CHECK(edges == 4);  // each of both edges, from both sides
+
+  // The top lies 0.1 above the edge from 0 to 2, and 0.4 below that from 1 to 3, which counts.
+  options.max_error = 0.3;
+  const Decimated refused = run(mesh, options);
+  CHECK(refused.collapses == 0);
+  CHECK(refused.stop == DecimateStop::kErrorBound);
+  options.max_error = 0.5;
+  CHECK(run(mesh, options).collapses == 1);
+}
+
+TEST_CASE("decimation: vertex removal keeps the shape of a flat outline with a notch", "[decimate]") {
+  // The corner inwards bounds no less than those outwards: filling it would be as wrong as cutting them.
+  IndexedFaceSet mesh = test::grid(8, 8);
+  IndexedFaceSet notched;
+  notched.points = mesh.points;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = mesh.face(f);
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](std::uint32_t v) { return mesh.points[v].x >= 5 && mesh.points[v].y >= 3; }))
+      continue;
+    notched.corners.insert(notched.corners.end(), corners.begin(), corners.end());
+  }
+  DecimateOptions options;
+  options.max_error = 1e-9;
+  const Decimated result = run(notched, options);
+  CHECK(result.mesh.face_count() == 4);
+  CHECK(result.error == 0);
+  double area = 0;
+  for (std::uint32_t f = 0; f < result.mesh.face_count(); ++f) {
+    const auto at = [&](std::uint32_t i) {
+      return DVec3(result.positions[result.mesh.origins()[3 * f + i]]);
+    };
+    area += cross(at(1) - at(0), at(2) - at(0)).z / 2;
+  }
+  CHECK(area == 64 - 3 * 5);
+}
+
+TEST_CASE("decimation: a vertex of many neighbours goes when it has fewer", "[decimate]") {
+  // A fan over a square whose sides are cut into eleven.
+  IndexedFaceSet mesh;
+  constexpr int kSide = 11;
+  for (int side = 0; side < 4; ++side)
+    for (int i = 0; i < kSide; ++i) {
+      const std::array<Vec3, 4> corner = {Vec3(0, 0, 0), Vec3(kSide, 0, 0), Vec3(kSide, kSide, 0),
+                                          Vec3(0, kSide, 0)};
+      const Vec3 step =
+          (corner[static_cast<std::size_t>(side + 1) % 4] - corner[static_cast<std::size_t>(side)]);
+      mesh.points.push_back(corner[static_cast<std::size_t>(side)] + step * (static_cast<float>(i) / kSide));
+    }
+  const auto count = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.emplace_back(4, 5, 0);
+  for (std::uint32_t i = 0; i < count; ++i)
+    mesh.corners.insert(mesh.corners.end(), {count, i, (i + 1) % count});
+  DecimateOptions options;
+  options.max_error = 1e-6;
+  const Decimated result = run(mesh, options);
+  CHECK(result.mesh.face_count() == 2);
+  CHECK(result.source_vertex == std::vector<std::uint32_t>{0, kSide, 2 * kSide, 3 * kSide});
+}
+
+TEST_CASE("decimation: vertex removal's history names what went and what stands for it", "[decimate]") {
+  IndexedFaceSet mesh = test::torus(24, 16);
+  test::jitter(mesh, 0.02f, 3);
+  DecimateOptions options;
+  options.keep_history = true;
+  options.target_faces = 200;
+  const Decimated result = run(mesh, options);
+  REQUIRE(result.history.size() == result.collapses);
+  std::vector<std::uint32_t> stands(mesh.points.size());
+  std::iota(stands.begin(), stands.end(), 0u);
+  std::vector<bool> gone(mesh.face_count(), false);
+  for (const Collapse<Vec3>& c : result.history) {
+    CHECK(c.position == mesh.points[c.kept]);
+    std::replace(stands.begin(), stands.end(), c.removed, c.kept);
+    for (const std::uint32_t f : c.faces) {
+      CHECK_FALSE(gone[f]);
+      gone[f] = true;
+    }
+  }
+  for (std::uint32_t v = 0; v < stands.size(); ++v)
+    CHECK(result.source_vertex[result.vertex_map[v]] == stands[v]);
+  for (const std::uint32_t f : result.source_face) CHECK_FALSE(gone[f]);
+}
+
+}  // namespace vkmesh
