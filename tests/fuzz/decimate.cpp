@@ -6,15 +6,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
-#include <set>
+#include <map>
+#include <numeric>
+#include <random>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <vkmesh/consolidate.h>
 #include <vkmesh/decimation/decimate.h>
+#include <vkmesh/decimation/decimate_index_buffer.h>
 #include <vkmesh/topology.h>
 
 #include "check.h"
@@ -30,6 +35,9 @@ struct Input {
   std::vector<std::uint32_t> corners;
   SurfaceTopology topology;
   std::size_t used = 0;  // vertices of faces
+  // What options borrow.
+  std::vector<float> values;
+  std::vector<std::uint32_t> value_of_corner, group_of_corner;
 };
 
 SurfaceTopology topology_of(std::size_t points, std::span<const std::uint32_t> corners) {
@@ -49,8 +57,51 @@ std::vector<std::uint32_t> some_of(Bytes& bytes, std::size_t count) {
   return some;
 }
 
+/// One attribute of few values, and groups of faces, or neither.
 template <class Point>
-DecimateOptions options_of(Bytes& bytes, const Input<Point>& input) {
+void add_attributes(Bytes& bytes, Input<Point>& input, DecimateOptions& options) {
+  const std::uint8_t how = bytes.next();
+  if (how % 4 != 0 || options.operation == DecimateOperation::kVertexRemoval) return;
+  std::mt19937 random(bytes.next());
+  const std::size_t corners = input.corners.size(), sides = 1 + how / 4 % 3;
+  // Faces are on a side by where one of their corners is, so that seams are curves as well as dots.
+  const auto side_of = [&](std::size_t face) {
+    const auto corner = input.corners[3 * face + (how / 16 % 3)];
+    return how % 16 == 0 ? random() % sides : corner * sides / input.points.size();
+  };
+  std::vector<std::size_t> side(corners / 3);
+  for (std::size_t f = 0; f < side.size(); ++f) side[f] = side_of(f);
+  if (how / 64 != 0) {
+    DecimateAttribute attribute;
+    attribute.components = 1 + how / 64 % 3;
+    attribute.kind = attribute.components == 3 ? AttributeKind::kNormal : AttributeKind::kPlain;
+    constexpr std::array<double, 4> kWeights = {0.01, 0, 1, 1e4};
+    attribute.weight = kWeights[bytes.next() % 4];
+    constexpr std::array<float, 4> kScales = {1, 0, 1e-30f, 1e15f};
+    const float scale = attribute.components == 3 ? 1 : kScales[bytes.next() % 4];
+    for (std::size_t i = 0; i < input.points.size() * sides; ++i) {
+      const float a = static_cast<float>(random() % 5) * 0.25f;
+      if (attribute.components == 3)
+        input.values.insert(input.values.end(), {0.6f, a < 0.5f ? 0.0f : 0.8f, a < 0.5f ? 0.8f : 0.0f});
+      else
+        for (std::uint32_t k = 0; k < attribute.components; ++k)
+          input.values.push_back(scale * (a + static_cast<float>(k)));
+    }
+    for (std::size_t c = 0; c < corners; ++c)
+      input.value_of_corner.push_back(static_cast<std::uint32_t>(input.corners[c] * sides + side[c / 3]));
+    attribute.values = input.values;
+    attribute.corners = input.value_of_corner;
+    options.attributes = {attribute};
+  }
+  if (how % 8 == 0) {
+    for (std::size_t c = 0; c < corners; ++c)
+      input.group_of_corner.push_back(static_cast<std::uint32_t>(side[c / 3]));
+    options.corner_groups = input.group_of_corner;
+  }
+}
+
+template <class Point>
+DecimateOptions options_of(Bytes& bytes, Input<Point>& input) {
   DecimateOptions options;
   options.keep_history = true;
   options.operation = std::array{DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse,
@@ -72,6 +123,7 @@ DecimateOptions options_of(Bytes& bytes, const Input<Point>& input) {
   options.locked_vertices = some_of(bytes, input.points.size());
   options.locked_edges = some_of(bytes, input.corners.size());
   options.locked_faces = some_of(bytes, input.corners.size() / 3);
+  add_attributes(bytes, input, options);
   return options;
 }
 
@@ -162,6 +214,75 @@ void require_locks(const BasicDecimated<Point>& result, const Input<Point>& inpu
           "a boundary that is kept stays");
 }
 
+/// How many parts the seams cut a surface into; `alike` tells whether two corners at one vertex agree.
+template <class Alike>
+std::size_t charts(const HalfEdgeMesh& mesh, Alike&& alike) {
+  std::vector<std::uint32_t> part(mesh.face_count());
+  std::iota(part.begin(), part.end(), 0u);
+  const auto root = [&](std::uint32_t f) {
+    while (part[f] != f) f = part[f];
+    return f;
+  };
+  std::size_t count = part.size();
+  mesh.for_each_edge([&](HalfEdgeId h) {
+    if (mesh.is_boundary(h)) return;
+    const HalfEdgeId t = mesh.twin(h);
+    const bool seam = !alike(h.index, mesh.next(t).index) || !alike(mesh.next(h).index, t.index);
+    const std::uint32_t a = root(mesh.face(h).index), b = root(mesh.face(t).index);
+    if (seam || a == b) return;
+    part[a] = b;
+    --count;
+  });
+  return count;
+}
+
+template <class Point>
+void require_attributes(const BasicDecimated<Point>& result, const Input<Point>& input,
+                        const DecimateOptions& options) {
+  const DecimatedAttributes& after = result.attributes;
+  const bool any = !options.attributes.empty() || !options.corner_groups.empty();
+  require(after.corners.size() == (any ? result.mesh.half_edge_count() : 0), "each corner has a wedge");
+  require(std::isfinite(result.attribute_error) && result.attribute_error >= 0,
+          "the attribute error is a number");
+  if (!any) return;
+  std::uint32_t wedges = 0;
+  for (const std::uint32_t w : after.corners) {
+    require(w <= wedges, "wedges are numbered as they come");
+    wedges = std::max(wedges, w + 1);
+  }
+  require(after.source_corner.size() == wedges && after.values.size() == options.attributes.size(),
+          "wedges have sources and values");
+  const auto alike = [&](std::uint32_t a, std::uint32_t b) {
+    const std::size_t n = options.attributes.empty() ? 0 : options.attributes[0].components;
+    for (std::size_t k = 0; k < n; ++k)
+      if (input.values[n * input.value_of_corner[a] + k] != input.values[n * input.value_of_corner[b] + k])
+        return false;
+    return input.group_of_corner.empty() || input.group_of_corner[a] == input.group_of_corner[b];
+  };
+  if (!options.prune_relative_size)
+    require(charts(input.mesh, alike) ==
+                charts(result.mesh, [&](std::uint32_t a,
+                                        std::uint32_t b) { return after.corners[a] == after.corners[b]; }),
+            "seams cut out the same number of charts");
+  const auto unmoved = [&](std::uint32_t v) {
+    return same_place(result.positions[v], input.points[result.source_vertex[v]]);
+  };
+  for (std::uint32_t c = 0; c < after.corners.size(); ++c) {
+    const std::uint32_t from = after.source_corner[after.corners[c]], v = result.mesh.origins()[c];
+    require(from < input.corners.size() && result.vertex_map[input.corners[from]] == v,
+            "wedges come from corners of their vertex");
+    if (options.attributes.empty()) continue;
+    const std::size_t n = options.attributes[0].components;
+    require(after.values[0].size() == n * wedges, "wedges have values");
+    for (std::size_t k = 0; k < n; ++k) {
+      const float value = after.values[0][n * after.corners[c] + k];
+      require(std::isfinite(value), "values are finite");
+      if (options.operation == DecimateOperation::kHalfEdgeCollapse && unmoved(v))
+        require(value == input.values[n * input.value_of_corner[from] + k], "values are kept");
+    }
+  }
+}
+
 /// The history, done again, gives the same vertices at the same places.
 template <class Point>
 void require_history(const BasicDecimated<Point>& result, const Input<Point>& input) {
@@ -248,6 +369,7 @@ void require_sound(const BasicDecimated<Point>& result, const Input<Point>& inpu
   require_history(result, input);
   require_stop(result, input, options);
   require_no_flips(result, input);
+  require_attributes(result, input, options);
 }
 
 template <class Point>
@@ -289,6 +411,10 @@ void fuzz_as(Bytes& bytes) {
   const std::uint8_t how = bytes.next();
   if (how % 4 == 1) options.target_faces = bytes.below(input.corners.size() / 3 + 1);
   const BasicDecimated<Point> whole = run(input, options);
+  if constexpr (std::is_same_v<Point, Vec3>)
+    if (options.operation == DecimateOperation::kHalfEdgeCollapse && options.attributes.empty() &&
+        options.corner_groups.empty())
+      fuzz_index_buffer(input, options);
   if (how % 4 != 0) return;
   // The same up to each vertex count: the state of the run after each of its operations.
   for (std::size_t left = input.used; left > whole.mesh.vertex_count(); --left) {
@@ -299,6 +425,38 @@ void fuzz_as(Bytes& bytes) {
                            same_operation<Point>),
             "a target changes nothing before it is reached");
   }
+}
+
+/// The surface of an index buffer when points at the same place are one.
+Topology welded(const std::vector<Vec3>& points, std::span<const std::uint32_t> indices) {
+  std::map<std::array<float, 3>, std::uint32_t> first;
+  std::vector<std::uint32_t> corners;
+  for (const std::uint32_t i : indices) {
+    const Vec3& p = points[i];
+    corners.push_back(first.try_emplace({p.x, p.y, p.z}, i).first->second);
+  }
+  return topology_of(points.size(), corners).whole;
+}
+
+/// The same as an index buffer, whose points may coincide.
+void fuzz_index_buffer(const Input<Vec3>& input, DecimateOptions options) {
+  options.keep_history = false;
+  const Topology before = welded(input.points, input.corners);
+  const auto result = decimate_index_buffer(input.points, input.corners, options);
+  require(result.has_value() == (before.manifold() && before.oriented()),
+          "manifolds are taken, and nothing else: " + (result ? "" : result.error().describe()));
+  if (!result) return require(result.error().code == ErrorCode::kUnsuitable, "refused as unsuitable");
+  require(result->indices.size() == 3 * result->source_face.size(), "each triangle has a source");
+  for (const std::uint32_t i : result->indices) require(i < input.points.size(), "indices name vertices");
+  require(std::is_sorted(result->source_face.begin(), result->source_face.end(), std::less_equal<>()),
+          "sources ascend");
+  const Topology after = welded(input.points, result->indices);
+  require(after.manifold() && after.oriented(), "a level is a manifold");
+  if (options.prune_relative_size) return;
+  require(after.euler_characteristic() == before.euler_characteristic() &&
+              after.boundary_loops == before.boundary_loops,
+          "a level has the topology of the first");
+  require((after.faces > 0) == (before.faces > 0), "something is left");
 }
 
 void fuzz(std::span<const std::uint8_t> all) {

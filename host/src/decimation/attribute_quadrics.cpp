@@ -213,7 +213,8 @@ void AttributeQuadrics::add_to(EdgeBatch& batch, std::span<const std::uint32_t> 
   }
 }
 
-void AttributeQuadrics::add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges) {
+void AttributeQuadrics::add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges,
+                                    EndCosts& costs) const {
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const std::uint32_t h = edges[i], p = mesh_.origin(h), q = mesh_.target(h);
     const std::array<float, 3> d = between(p, q);
@@ -222,8 +223,8 @@ void AttributeQuadrics::add_to_ends(EdgeBatch& batch, std::span<const std::uint3
       at_p += deviation(wq, {-d[0], -d[1], -d[2]}, wp);
       at_q += deviation(wp, d, wq);
     });
-    end_costs_.at[0][i] = at_p;
-    end_costs_.at[1][i] = at_q;
+    costs.at[0][i] = at_p;
+    costs.at[1][i] = at_q;
     if (wedges_.on_seam(p) != wedges_.on_seam(q)) lock(wedges_.on_seam(p) ? batch.p : batch.q, i);
   }
 }

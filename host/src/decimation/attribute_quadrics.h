@@ -40,8 +40,7 @@ class AttributeQuadrics {
   /// where an end is locked, there. A vertex of a seam is not to become part of one that is on none.
   void add_to(EdgeBatch& batch, std::span<const std::uint32_t> edges) const;
   /// The same for a point at one of the ends.
-  void add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges);
-  [[nodiscard]] const EndCosts& end_costs() const { return end_costs_; }
+  void add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges, EndCosts& costs) const;
 
   /// Of the geometric quadrics alone, with the point at p + x.
   [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const std::array<float, 3>& x) const;
@@ -92,7 +91,6 @@ class AttributeQuadrics {
   std::vector<float> value_;           // the same: the input's
   std::vector<CollapseVertex> plain_;  // the vertices with their geometric quadrics alone
   std::vector<float> deviation_;       // by vertex
-  EndCosts end_costs_;
 };
 
 }  // namespace vkmesh::detail

@@ -1,16 +1,17 @@
 #include "decimation/collapse_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
-#include "counting_sort.h"
+#include "parallel.h"
 
 namespace vkmesh::detail {
 
 /// How the faces around a vertex follow each other. Entry i is about the i-th half-edge that leaves it.
 class CollapseMesh::Fan {
  public:
-  explicit Fan(std::size_t most) : to_(most), from_(most), clockwise_(most), counter_(most) {}
+  explicit Fan(std::size_t most) : to_(most), from_(most), clockwise_(most) {}
 
   /// Takes the vertex that the half-edge leads to, and the one from which the half-edge before it comes.
   void set(std::size_t i, std::uint32_t to, std::uint32_t from) {
@@ -21,38 +22,34 @@ class CollapseMesh::Fan {
   /// Finds the half-edges next to each other: where one leads the other's face comes from. Returns false
   /// unless all form one fan.
   bool match(std::size_t count) {
-    const std::uint32_t* const to = to_.data();
-    const std::uint32_t* const from = from_.data();
-    std::uint32_t* const clockwise = clockwise_.data();
-    std::uint32_t* const counter = counter_.data();
-    std::fill_n(counter, count, kInvalid);
-    if (count > kFew) {
+    if (count > kFew)
       match_many(count);
-    } else {
-      for (std::size_t i = 0; i < count; ++i) {
-        std::uint32_t found = kInvalid;
-        for (std::uint32_t j = 0; j < count; ++j) found = from[j] == to[i] ? j : found;
-        clockwise[i] = found;
-      }
+    else
+      match_few(count);
+    std::uint32_t* const clockwise = clockwise_.data();
+    const std::size_t ends =
+        static_cast<std::size_t>(std::count(clockwise, clockwise + count, std::uint32_t{kInvalid}));
+    if (ends > 1) return false;
+    // The last goes clockwise to the first: the fan is closed for the time being.
+    std::uint32_t last = 0;
+    if (ends == 1) {
+      last = static_cast<std::uint32_t>(std::find(clockwise, clockwise + count, std::uint32_t{kInvalid}) -
+                                        clockwise);
+      std::uint64_t sum = 0;  // of all but the first
+      for (std::size_t i = 0; i < count; ++i) sum += i != last ? clockwise[i] : 0;
+      const std::uint64_t first = std::uint64_t{count} * (count - 1) / 2 - sum;
+      if (first >= count) return false;
+      clockwise[last] = static_cast<std::uint32_t>(first);
     }
-    std::size_t starts = 0;
-    std::uint32_t start = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (clockwise[i] == kInvalid) {
-        ++starts;
-        start = i;
-      } else {
-        counter[clockwise[i]] = i;
-      }
+    bool early = false;
+    std::uint32_t at = last;
+    for (std::size_t i = 1; i < count; ++i) {
+      at = clockwise[at];
+      early |= at == last;
     }
-    if (starts > 1) return false;
-    std::size_t met = 0;
-    std::uint32_t at = start;
-    do {
-      ++met;
-      at = counter[at];
-    } while (at != start && at != kInvalid && met < count);
-    return met == count && at == (starts == 0 ? start : kInvalid);
+    const bool one = !early && clockwise[at] == last;
+    if (ends == 1) clockwise[last] = kInvalid;
+    return one;
   }
 
   /// The half-edge beyond the face on the right of half-edge i; kInvalid where there is none.
@@ -60,6 +57,19 @@ class CollapseMesh::Fan {
 
  private:
   static constexpr std::size_t kFew = 32;
+
+  // By a table of the low bits of `from`; what others have overwritten is looked for.
+  void match_few(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) table_[from_[i] % kTable] = static_cast<std::uint8_t>(i);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint32_t found = table_[to_[i] % kTable];
+      if (found >= count || from_[found] != to_[i]) {
+        found = kInvalid;
+        for (std::uint32_t j = 0; j < count; ++j) found = from_[j] == to_[i] ? j : found;
+      }
+      clockwise_[i] = found;
+    }
+  }
 
   void match_many(std::size_t count) {
     order_.resize(count);
@@ -74,7 +84,9 @@ class CollapseMesh::Fan {
     }
   }
 
-  std::vector<std::uint32_t> to_, from_, clockwise_, counter_, order_;
+  static constexpr std::uint32_t kTable = 256;
+  std::array<std::uint8_t, kTable> table_{};
+  std::vector<std::uint32_t> to_, from_, clockwise_, order_;
 };
 
 bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
@@ -82,47 +94,87 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
   face_count_ = corners.size() / 3;
   apex_ = static_cast<std::uint32_t>(vertex_count);
   faces_ = LargeArray<Face>(face_count_ + face_count_ / 16 + 64);
-  for (std::uint32_t f = 0; f < face_count_; ++f) {
-    const std::uint32_t a = corners[3 * f], b = corners[3 * f + 1], c = corners[3 * f + 2];
-    if (a == b || b == c || c == a) return false;
-    faces_[f] = {{a, b, c}, 0, {}, f};
-  }
+  std::atomic<bool> simple = true;
+  constexpr std::size_t kGrain = 1 << 14;
+  parallel_ranges(face_count_, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const std::uint32_t a = corners[3 * f], b = corners[3 * f + 1], c = corners[3 * f + 2];
+      if (a == b || b == c || c == a) simple = false;
+      faces_[f] = {{a, b, c}, 0, {}, static_cast<std::uint32_t>(f)};
+    }
+  });
+  if (!simple) return false;
+  parts_ = VertexParts(vertex_count, corners);
+
   // The half-edges that leave each vertex, where the vertices will be: that is memory to be had at no cost.
   constexpr std::size_t kAhead = 64, kWords = sizeof(CollapseVertex) / sizeof(std::uint32_t);
   vertices =
       LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners.size() + kAhead + kWords - 1) / kWords));
   auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
   for (std::size_t i = 0; i < kAhead; ++i) leaving[corners.size() + i] = 0;
-  const std::vector<std::uint32_t> offsets = counting_sort(
-      vertex_count, corners.size(), [&](std::size_t c) { return corners[c]; },
-      [&](std::size_t slot, std::size_t c) { leaving[slot] = static_cast<std::uint32_t>(c + c / 3); });
+  std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
+  parts_.for_each([&](const VertexParts::Part& part) {
+    part.for_each_face([&](std::uint32_t f) {
+      for (const std::uint32_t v : corners.subspan(3 * std::size_t{f}, 3))
+        if (part.has(v)) ++ends[v];
+    });
+  });
   std::size_t most = 0;
-  for (std::size_t v = 0; v < vertex_count; ++v)
-    most = std::max<std::size_t>(most, offsets[v + 1] - offsets[v]);
-
-  Fan fan(most);
-  std::vector<std::uint32_t> boundary;
-  leading.assign(vertex_count, kInvalid);
-  for (std::size_t v = 0; v < vertex_count; ++v) {
-    const std::size_t first = offsets[v], count = offsets[v + 1] - first;
-    if (count == 0) continue;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t h = leaving[first + i], n = next(h), p = previous(h);
-      const std::uint32_t ahead = leaving[first + i + kAhead];
-      prefetch(&corners[ahead - ahead / 4]);
-      prefetch(&faces_[ahead / 4]);
-      fan.set(i, corners[n - n / 4], corners[p - p / 4]);
-    }
-    if (!fan.match(count)) return false;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t h = leaving[first + i], j = fan.clockwise(i);
-      if (j == kInvalid)
-        boundary.push_back(h);
-      else
-        faces_[h >> 2].twin[h & 3u] = previous(leaving[first + j]);
-    }
-    leading[v] = leaving[first + count - 1];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& end : ends) {
+    const std::uint32_t count = end;
+    most = std::max<std::size_t>(most, count);
+    end = sum;
+    sum += count;
   }
+  parts_.for_each([&](const VertexParts::Part& part) {
+    part.for_each_face([&](std::uint32_t f) {
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const std::uint32_t v = corners[3 * std::size_t{f} + i];
+        if (part.has(v)) leaving[ends[v]++] = 4 * f + i;
+      }
+    });
+  });
+
+  leading.resize(vertex_count);
+  struct Fans {
+    std::vector<std::uint32_t> boundary;
+    bool single = true;
+    Fans& operator+=(const Fans& after) {
+      boundary.insert(boundary.end(), after.boundary.begin(), after.boundary.end());
+      single &= after.single;
+      return *this;
+    }
+  };
+  const auto fans = parallel_sum<Fans>(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+    Fans found;
+    Fan fan(most);
+    std::size_t first = begin == 0 ? 0 : ends[begin - 1];
+    for (std::size_t v = begin; v < end && found.single; first = ends[v++]) {
+      const std::size_t count = ends[v] - first;
+      leading[v] = count == 0 ? kInvalid : leaving[first + count - 1];
+      if (count == 0) continue;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t h = leaving[first + i], n = next(h), p = previous(h);
+        const std::uint32_t ahead = leaving[first + i + kAhead];
+        prefetch(&corners[ahead - ahead / 4]);
+        prefetch(&faces_[ahead / 4]);
+        fan.set(i, corners[n - n / 4], corners[p - p / 4]);
+      }
+      found.single = fan.match(count);
+      if (!found.single) break;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t h = leaving[first + i], j = fan.clockwise(i);
+        if (j == kInvalid)
+          found.boundary.push_back(h);
+        else
+          faces_[h >> 2].twin[h & 3u] = previous(leaving[first + j]);
+      }
+    }
+    return found;
+  });
+  if (!fans.single) return false;
+  const std::vector<std::uint32_t>& boundary = fans.boundary;
   return close(boundary);
 }
 

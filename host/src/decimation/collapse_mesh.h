@@ -10,6 +10,7 @@
 #include <vkmesh/handles.h>
 
 #include "decimation/large_array.h"
+#include "decimation/vertex_parts.h"
 
 namespace vkmesh::detail {
 
@@ -85,6 +86,8 @@ class CollapseMesh {
   [[nodiscard]] bool build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
                            std::vector<std::uint32_t>& leading);
 
+  /// For loops over the faces that write to their corners.
+  [[nodiscard]] const VertexParts& parts() const { return parts_; }
   [[nodiscard]] std::uint32_t apex() const { return apex_; }
   [[nodiscard]] std::size_t face_count() const { return face_count_; }
   /// All half-edges are less, those of ghosts included.
@@ -171,6 +174,7 @@ class CollapseMesh {
   bool close(std::span<const std::uint32_t> boundary);
 
   LargeArray<Face> faces_;
+  VertexParts parts_;
   std::size_t face_count_ = 0;
   std::size_t ghosts_ = 0;
   std::uint32_t apex_ = 0;

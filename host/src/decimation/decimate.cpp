@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -23,6 +24,7 @@
 #include "decimation/spatial_order.h"
 #include "decimation/vertex_removals.h"
 #include "decimation/wedges.h"
+#include "parallel.h"
 
 namespace vkmesh {
 namespace {
@@ -138,6 +140,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               std::span<const std::uint32_t> corners,
                                               const DecimateOptions& options, CollapseOrder order,
                                               const Progress& progress) {
+  constexpr std::size_t kGrain = 1 << 14;
   const auto begun = std::chrono::steady_clock::now();
   VKMESH_CHECK(check(options, points.size(), corners.size()));
   if (corners.size() % 3 != 0) return fail(ErrorCode::kUsage, "decimation takes three corners a face");
@@ -145,13 +148,16 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     return fail(ErrorCode::kUnsuitable,
                 "decimation takes at most 2^28 vertices, 2^29 faces and boundary edges");
   std::vector<std::uint8_t> in_use(points.size(), 0);
-  for (const std::uint32_t c : corners) {
-    if (c >= points.size()) return fail(ErrorCode::kUsage, "a corner names no point");
-    in_use[c] = 1;
-  }
-  for (const Point& p : points)
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
+  std::atomic<bool> in_range = true;
+  parallel_ranges(corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (const std::uint32_t c : corners.subspan(begin, end - begin)) {
+      if (c >= points.size())
+        in_range.store(false, std::memory_order_relaxed);
+      else
+        std::atomic_ref(in_use[c]).store(1, std::memory_order_relaxed);
+    }
+  });
+  if (!in_range) return fail(ErrorCode::kUsage, "a corner names no point");
   VKMESH_TRY(const Frame frame, frame_of(points, std::span<const std::uint8_t>(in_use)));
   in_use = std::vector<std::uint8_t>();  // {} would keep the memory
   const auto local = [&](std::size_t v) {
@@ -190,16 +196,19 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (!manifold)
     return fail(ErrorCode::kUnsuitable, "decimation takes oriented manifolds only: consolidate first");
 
-  std::size_t used = 0;
-  for (std::uint32_t v = 0; v < points.size(); ++v) {
-    CollapseVertex& vertex = mesh.vertices[v];
-    const std::uint32_t source = vertex_order.empty() ? v : vertex_order[v];
-    vertex = {};
-    vertex.position = local(source);
-    vertex.leading = leading[v];
-    vertex.source = source;
-    used += leading[v] != kInvalid ? 1 : 0;
-  }
+  const auto used = parallel_sum<std::size_t>(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+      CollapseVertex& vertex = mesh.vertices[v];
+      const std::uint32_t source = vertex_order.empty() ? static_cast<std::uint32_t>(v) : vertex_order[v];
+      vertex = {};
+      vertex.position = local(source);
+      vertex.leading = leading[v];
+      vertex.source = source;
+      count += leading[v] != kInvalid ? 1 : 0;
+    }
+    return count;
+  });
   leading = std::vector<std::uint32_t>();
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());  // it lies nowhere

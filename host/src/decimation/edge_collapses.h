@@ -18,6 +18,7 @@
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
 #include "decimation/face_turns.h"
+#include "parallel.h"
 
 namespace vkmesh::detail {
 
@@ -65,26 +66,37 @@ class EdgeCollapses {
   /// All edges with their costs.
   void fill() {
     constexpr std::uint32_t kAhead = 64;
-    std::array<std::uint32_t, EdgeBatch::kSize + 1> ids{};
-    std::size_t count = 0;
-    const auto flush = [&] {
-      evaluate(std::span(ids).first(count));
-      for (std::size_t i = 0; i < count; ++i) queue_.fill(ids[i], batch_.cost[i]);
-      count = 0;
+    constexpr std::size_t kGrain = 1 << 12;
+    struct Block {
+      std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(3 * kGrain + 1);
+      std::vector<float> cost = std::vector<float>(3 * kGrain);
+      EdgeBatch batch;
+      std::size_t count = 0;
     };
     const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
-    for (std::uint32_t f = 0; f <= last; ++f) {
-      for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin) prefetch(&vertices_[v]);
-      if (!mesh_.alive(4 * f)) continue;
-      for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
-        const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
-        mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);
-        ids[count] = h;
-        count += first ? 1 : 0;
-        if (count == EdgeBatch::kSize) flush();
+    const auto make = [&](std::size_t begin, std::size_t end, Block& block) {
+      block.count = 0;
+      for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
+        for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin)
+          prefetch(&vertices_[v]);
+        if (!mesh_.alive(4 * f)) continue;
+        for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
+          const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
+          mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);
+          block.ids[block.count] = h;
+          block.count += first ? 1 : 0;
+        }
       }
-    }
-    flush();
+      for (std::size_t i = 0; i < block.count; i += EdgeBatch::kSize) {
+        const std::size_t some = std::min(EdgeBatch::kSize, block.count - i);
+        evaluate(std::span(block.ids).subspan(i, some), block.batch);
+        std::copy_n(block.batch.cost.begin(), some, &block.cost[i]);
+      }
+    };
+    const auto finish = [&](std::size_t, std::size_t, Block& block) {
+      for (std::size_t i = 0; i < block.count; ++i) queue_.fill(block.ids[i], block.cost[i]);
+    };
+    parallel_in_order<Block>(mesh_.face_count(), kGrain, make, finish);
     queue_.start();
   }
 
@@ -110,18 +122,20 @@ class EdgeCollapses {
 
  private:
   // The edges of these half-edges, into the batch.
-  void evaluate(std::span<const std::uint32_t> edges) {
-    batch_.gather(edges.size(), [&](std::size_t i) {
+  void evaluate(std::span<const std::uint32_t> edges) { evaluate(edges, batch_); }
+  void evaluate(std::span<const std::uint32_t> edges, EdgeBatch& batch) const {
+    batch.gather(edges.size(), [&](std::size_t i) {
       const std::uint32_t h = edges[i];
       return std::pair(&vertices_[mesh_.origin(h)], &vertices_[mesh_.target(h)]);
     });
     if constexpr (kAttributes && Placement::kAtEnds) {
-      state_.attributes->add_to_ends(batch_, edges);
-      place_at_end(batch_, state_.attributes->end_costs(), edges.size());
+      EndCosts end_costs;
+      state_.attributes->add_to_ends(batch, edges, end_costs);
+      place_at_end(batch, end_costs, edges.size());
       return;
     }
-    if constexpr (kAttributes) state_.attributes->add_to(batch_, edges);
-    Placement::place(batch_, edges.size());
+    if constexpr (kAttributes) state_.attributes->add_to(batch, edges);
+    Placement::place(batch, edges.size());
   }
 
   // What follows happens to all edges of the batch before the next thing does: what one waits for from

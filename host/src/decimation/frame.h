@@ -11,6 +11,8 @@
 #include <vkmesh/result.h>
 #include <vkmesh/vec.h>
 
+#include "parallel.h"
+
 namespace vkmesh::detail {
 
 /// Where the mesh was: local = (input - centre) · scale, the scale a power of two.
@@ -20,18 +22,37 @@ struct Frame {
   double diagonal = 0;  // of the bounding box, in units of the input
 };
 
-/// Of the points that are used.
+/// Of the points that are used. All points must be finite: kUnsuitable.
 template <class Point>
 Result<Frame> frame_of(std::span<const Point> points, std::span<const std::uint8_t> used) {
-  DVec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (used[v] == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      const double x = points[v][k];
-      low[k] = std::min(low[k], x);
-      high[k] = std::max(high[k], x);
+  struct Box {
+    DVec3 low{std::numeric_limits<double>::infinity()}, high = -low;
+    bool finite = true;
+    Box& operator+=(const Box& b) {
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], b.low[k]);
+        high[k] = std::max(high[k], b.high[k]);
+      }
+      finite &= b.finite;
+      return *this;
     }
-  }
+  };
+  const auto box = parallel_sum<Box>(points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    Box part;
+    for (std::size_t v = begin; v < end; ++v) {
+      const Point& p = points[v];
+      part.finite &= std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      if (used[v] == 0) continue;
+      for (int k = 0; k < 3; ++k) {
+        const double x = p[k];
+        part.low[k] = std::min(part.low[k], x);
+        part.high[k] = std::max(part.high[k], x);
+      }
+    }
+    return part;
+  });
+  if (!box.finite) return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
+  const DVec3 &low = box.low, &high = box.high;
   Frame frame;
   if (low.x > high.x) return frame;  // nothing is used
   const DVec3 size = high - low;

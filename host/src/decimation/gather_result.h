@@ -16,8 +16,29 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/driver.h"
 #include "decimation/frame.h"
+#include "parallel.h"
 
 namespace vkmesh::detail {
+
+/// The numbers below `count` that f(number) is true for, in ascending order; f is called on any threads.
+template <class F>
+std::vector<std::uint32_t> collect(std::size_t count, F&& f) {
+  struct List {
+    std::vector<std::uint32_t> all;
+    List& operator+=(const List& after) {
+      all.insert(all.end(), after.all.begin(), after.all.end());
+      return *this;
+    }
+  };
+  return parallel_sum<List>(count, 1 << 15,
+                            [&](std::size_t begin, std::size_t end) {
+                              List list;
+                              for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+                                if (f(i)) list.all.push_back(i);
+                              return list;
+                            })
+      .all;
+}
 
 template <class Point>
 BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> points, bool in_order,
@@ -48,17 +69,17 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
   std::vector<std::uint32_t>& new_vertex = result.vertex_map;
   new_vertex.assign(n, kInvalid);
-  std::vector<std::uint32_t> absorbed(n, kInvalid), alive;  // `absorbed`: by which vertex, both of the input
-  for (std::uint32_t v = 0; v < n; ++v) {
+  std::vector<std::uint32_t> absorbed(n, kInvalid);  // by which vertex, both of the input
+  const std::vector<std::uint32_t> alive = collect(n, [&](std::uint32_t v) {
     const CollapseVertex& vertex = vertices[v];
     if (vertex.alive()) {
-      alive.push_back(v);
       new_vertex[vertex.source & kMask] = 0;
     } else if (vertex.leading != kInvalid) {
       const std::uint32_t by = vertex.leading & ~CollapseVertex::kGone;
       absorbed[vertex.source & kMask] = source_of(by);
     }
-  }
+    return vertex.alive();
+  });
   for (std::uint32_t v = 0; v < n; ++v) {
     if (new_vertex[v] == kInvalid) continue;
     new_vertex[v] = static_cast<std::uint32_t>(result.source_vertex.size());
@@ -86,13 +107,12 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     }
   }
 
-  std::vector<std::uint32_t> new_face(mesh.face_count(), kInvalid), alive_faces;
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+  std::vector<std::uint32_t> new_face(mesh.face_count(), kInvalid);
+  const std::vector<std::uint32_t> alive_faces = collect(mesh.face_count(), [&](std::uint32_t f) {
     const CollapseMesh::Face& face = mesh.face(4 * f);
-    if (!face.alive()) continue;
-    alive_faces.push_back(f);
-    new_face[face.source] = 0;
-  }
+    if (face.alive()) new_face[face.source] = 0;
+    return face.alive();
+  });
   for (std::uint32_t f = 0; f < new_face.size(); ++f) {
     if (new_face[f] == kInvalid) continue;
     new_face[f] = static_cast<std::uint32_t>(result.source_face.size());
@@ -101,14 +121,16 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   if (attributes != nullptr) result.attributes = attributes->gather(alive_faces, new_face);
   std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size()),
       leading(result.positions.size(), kInvalid);
-  for (const std::uint32_t f : alive_faces) {
-    const CollapseMesh::Face& face = mesh.face(4 * f);
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t h = 3 * new_face[face.source] + i, t = face.twin[i];
-      origin[h] = new_vertex[source_of(face.origin[i])];
-      twin[h] = mesh.is_ghost(t) ? kInvalid : 3 * new_face[mesh.face(t).source] + t % 4;
+  parallel_ranges(alive_faces.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const CollapseMesh::Face& face = mesh.face(4 * alive_faces[k]);
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const std::uint32_t h = 3 * new_face[face.source] + i, t = face.twin[i];
+        origin[h] = new_vertex[source_of(face.origin[i])];
+        twin[h] = mesh.is_ghost(t) ? kInvalid : 3 * new_face[mesh.face(t).source] + t % 4;
+      }
     }
-  }
+  });
   for (std::uint32_t h = 0; h < origin.size(); ++h)
     if (leading[origin[h]] == kInvalid || twin[h] == kInvalid) leading[origin[h]] = h;
   result.mesh = HalfEdgeMesh::from_arrays(std::move(origin), std::move(twin), std::move(leading));

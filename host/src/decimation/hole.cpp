@@ -152,13 +152,13 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
   const std::size_t root = pair(0, n - 1);
   VKMESH_LANES(l) {
     const float x = batch.left[root][l];
-    batch.left[root][l] = (batch.closed[l] > 0) & (x > 0) ? 0.0f : x;
+    batch.left[root][l] = ((batch.closed[l] > 0) & (x > 0)) ? 0.0f : x;
   }
   for (std::size_t i = 1; i < n; ++i)  // around once at most
     VKMESH_LANES(l) {
       const float x = batch.left[pair(0, i)][l];
       const float was = beyond[l], before = illegal[l];
-      illegal[l] = (was > 0) & (x > 0) ? kNone : before;
+      illegal[l] = ((was > 0) & (x > 0)) ? kNone : before;
       beyond[l] = x < 0 ? kNone : was;
     }
 
@@ -210,12 +210,12 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
           const float value = along0[l] + apart * (2 * along1[l] + apart * along2[l]);
           const bool has_area = size2 > least * least;
           w.apart2[abc][l] = apart * apart;
-          w.at_v[abc][l] = holds & (value > 0) ? value : 0.0f;
+          w.at_v[abc][l] = (holds & (value > 0)) ? value : 0.0f;
           normal[0][l] = nx;
           normal[1][l] = ny;
           normal[2][l] = nz;
           length2[l] = has_area ? size2 : 0.0f;
-          misfit[l] = has_area & (looks * std::fabs(looks) < kSteepest * kSteepest * size2) ? kNone : 0.0f;
+          misfit[l] = (has_area & (looks * std::fabs(looks) < kSteepest * kSteepest * size2)) ? kNone : 0.0f;
           without[l] = has_area ? 0.0f : kNone;
         }
         const auto turns = [&](std::size_t f) {
@@ -223,8 +223,8 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
             const float along = normal[0][l] * w.face[f][0][l] + normal[1][l] * w.face[f][1][l] +
                                 normal[2][l] * w.face[f][2][l];
             const float before = misfit[l], none = without[l], reliable = w.reliable[f][l];
-            misfit[l] =
-                (length2[l] > 0) & (along * std::fabs(along) < w.limit[f][l] * length2[l]) ? kNone : before;
+            const bool far = along * std::fabs(along) < w.limit[f][l] * length2[l];
+            misfit[l] = ((length2[l] > 0) & far) ? kNone : before;
             without[l] = none < reliable ? none : reliable;
           }
         };
@@ -291,7 +291,7 @@ VKMESH_CLONES void fill_holes(HoleBatch& batch, std::size_t n, float cos_deviati
     }
   VKMESH_LANES(l) {
     const float error = base[l] + w.error[root][l] + illegal[l];
-    batch.error[l] = (w.best[root][l] < kNone) & (error < kNone) ? error : kNone;
+    batch.error[l] = ((w.best[root][l] < kNone) & (error < kNone)) ? error : kNone;
   }
 }
 

@@ -24,7 +24,7 @@ struct AreaVector {
   std::array<float, 3> twice;
   float length;
 };
-AreaVector area_of(const CollapseMesh& mesh, const CollapseMesh::Face& face) {
+[[gnu::always_inline]] inline AreaVector area_of(const CollapseMesh& mesh, const CollapseMesh::Face& face) {
   const auto &a = mesh.vertices[face.origin[0]].position, &b = mesh.vertices[face.origin[1]].position,
              &c = mesh.vertices[face.origin[2]].position;
   const std::array<float, 3> s = {b[0] - a[0], b[1] - a[1], b[2] - a[2]},
@@ -51,32 +51,39 @@ float constraint(const CollapseMesh& mesh, const CollapseMesh::Face& face, std::
 void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights) {
   constexpr std::uint32_t kAhead = 16;
   const auto last = static_cast<std::uint32_t>(mesh.face_count()) - 1;
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    const CollapseMesh::Face& face = mesh.face(4 * f);
-    for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin)
-      prefetch(&mesh.vertices[v]);
-    const AreaVector area = area_of(mesh, face);
-    if (!(area.length > 0)) continue;
-    std::array<float, 3> n = area.twice;
-    for (float& x : n) x /= area.length;
-    for (const std::uint32_t v : face.origin) add_plane(mesh.vertices[v], n, 0.5f * area.length);
-    if (!(weights.boundary > 0 || weights.crease > 0 || weights.seam > 0)) continue;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const float weight = constraint(mesh, face, i, n, weights);
-      if (!(weight > 0)) continue;
-      CollapseVertex &from = mesh.vertices[face.origin[i]], &to = mesh.vertices[face.origin[(i + 1) % 3]];
-      const auto &a = from.position, &b = to.position;
-      const std::array<float, 3> e = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-      const float squared = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-      if (!(squared > 0)) continue;
-      const float root = std::sqrt(squared);
-      const std::array<float, 3> across = {(e[1] * n[2] - e[2] * n[1]) / root,
-                                           (e[2] * n[0] - e[0] * n[2]) / root,
-                                           (e[0] * n[1] - e[1] * n[0]) / root};
-      add_plane(from, across, weight * squared);
-      add_plane(to, across, weight * squared);
-    }
-  }
+  const bool constrained = weights.boundary > 0 || weights.crease > 0 || weights.seam > 0;
+  mesh.parts().for_each([&, vertices = &mesh.vertices[0]](const VertexParts::Part& part) {
+    const auto add = [vertices, part](std::uint32_t v, const std::array<float, 3>& n, float w) {
+      if (part.has(v)) add_plane(vertices[v], n, w);
+    };
+    part.for_each_face([&mesh, &weights, vertices, part, add, last, constrained](std::uint32_t f) {
+      const CollapseMesh::Face& face = mesh.face(4 * f);
+      for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin) prefetch(&vertices[v]);
+      const auto& [p, q, r] = face.origin;
+      if (!part.has(p) && !part.has(q) && !part.has(r)) return;
+      const AreaVector area = area_of(mesh, face);
+      if (!(area.length > 0)) return;
+      std::array<float, 3> n = area.twice;
+      for (float& x : n) x /= area.length;
+      for (const std::uint32_t v : face.origin) add(v, n, 0.5f * area.length);
+      if (!constrained) return;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const float weight = constraint(mesh, face, i, n, weights);
+        if (!(weight > 0)) continue;
+        const std::uint32_t from = face.origin[i], to = face.origin[(i + 1) % 3];
+        const auto &a = vertices[from].position, &b = vertices[to].position;
+        const std::array<float, 3> e = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        const float squared = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+        if (!(squared > 0)) continue;
+        const float root = std::sqrt(squared);
+        const std::array<float, 3> across = {(e[1] * n[2] - e[2] * n[1]) / root,
+                                             (e[2] * n[0] - e[0] * n[2]) / root,
+                                             (e[0] * n[1] - e[1] * n[0]) / root};
+        add(from, across, weight * squared);
+        add(to, across, weight * squared);
+      }
+    });
+  });
 }
 
 }  // namespace vkmesh::detail

@@ -1,0 +1,79 @@
+// The vertices of a mesh in ranges, for loops over faces that add something up at their corners.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <tbb/task_arena.h>
+
+#include "parallel.h"
+
+namespace vkmesh::detail {
+
+/// A thread takes a range of vertices and all the blocks of faces with a corner in it, in order, so that each
+/// vertex is written by one thread, and in the order of its faces: the bytes do not depend on how many
+/// threads there are. Where neighbours stand near each other few faces are looked at twice.
+class VertexParts {
+ public:
+  VertexParts() = default;
+  /// Corners must be < vertex_count.
+  VertexParts(std::size_t vertex_count, std::span<const std::uint32_t> corners)
+      : vertex_count_(vertex_count),
+        face_count_(corners.size() / 3),
+        blocks_((face_count_ + kBlock - 1) / kBlock) {
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    parts_ = threads == 1 ? 1 : 4 * threads;
+    parallel_ranges(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const std::size_t first = 3 * kBlock * b, last = std::min(first + 3 * kBlock, corners.size());
+        Range range;
+        for (const std::uint32_t v : corners.subspan(first, last - first)) {
+          range.low = std::min(range.low, v);
+          range.high = std::max(range.high, v);
+        }
+        blocks_[b] = range;
+      }
+    });
+  }
+
+  /// Calls body(part) once for each part, on any threads.
+  template <class Body>
+  void for_each(Body&& body) const {
+    parallel_ranges(parts_, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        body(Part{*this, static_cast<std::uint32_t>(vertex_count_ * i / parts_),
+                  static_cast<std::uint32_t>(vertex_count_ * (i + 1) / parts_)});
+    });
+  }
+
+  struct Part {
+    const VertexParts& all;
+    std::uint32_t begin, end;
+
+    [[nodiscard]] bool has(std::uint32_t v) const { return v - begin < end - begin; }
+    /// Calls f(face) in ascending order for faces among which are all that have a corner in the part.
+    template <class F>
+    void for_each_face(F&& f) const {
+      for (std::size_t b = 0; b < all.blocks_.size(); ++b) {
+        if (all.blocks_[b].high < begin || all.blocks_[b].low >= end) continue;
+        const auto last = static_cast<std::uint32_t>(std::min((b + 1) * kBlock, all.face_count_));
+        for (auto face = static_cast<std::uint32_t>(b * kBlock); face < last; ++face) f(face);
+      }
+    }
+  };
+
+ private:
+  static constexpr std::size_t kBlock = 2048;
+  struct Range {
+    std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
+  };
+
+  std::size_t vertex_count_ = 0, face_count_ = 0, parts_ = 1;
+  std::vector<Range> blocks_;
+};
+
+}  // namespace vkmesh::detail
