@@ -2,6 +2,8 @@
 #include <memory>
 #include <utility>
 
+#include <tbb/task_arena.h>
+
 #include <vkmesh/consolidate.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/node_neighbours.h>
@@ -26,10 +28,12 @@ Result<double> timed(Work&& work) {
 struct Removal {
   const char* name;
   DecimateOperation operation;
+  int threads;
 };
-constexpr Removal kRemovals[] = {{"edge collapse", DecimateOperation::kEdgeCollapse},
-                                 {"half-edge collapse", DecimateOperation::kHalfEdgeCollapse},
-                                 {"vertex removal", DecimateOperation::kVertexRemoval}};
+constexpr Removal kRemovals[] = {{"edge collapse", DecimateOperation::kEdgeCollapse, 1},
+                                 {"edge collapse, two threads", DecimateOperation::kEdgeCollapse, 2},
+                                 {"half-edge collapse", DecimateOperation::kHalfEdgeCollapse, 1},
+                                 {"vertex removal", DecimateOperation::kVertexRemoval, 1}};
 
 }  // namespace
 
@@ -55,20 +59,24 @@ Result<void> add_host(Programme& programme, const Input& input) {
        }});
   for (const DecimationCase& wanted : decimation_cases(input))
     for (const Removal& removal : kRemovals)
-      add_decimation(programme, wanted, std::string("vkmesh, ") + removal.name,
-                     [&mesh = wanted.mesh, target = wanted.target,
-                      operation = removal.operation](Surface& surface) -> Result<double> {
-                       DecimateOptions options;
-                       options.operation = operation;
-                       options.target_faces = target;
-                       const Stopwatch watch;
-                       auto decimated = decimate(TriangleSurface{mesh.points, mesh.corners}, options);
-                       const double milliseconds = watch.milliseconds();
-                       if (!decimated) return tl::unexpected<Error>(decimated.error());
-                       const auto corners = decimated->mesh.origins();
-                       surface = {std::move(decimated->positions), {corners.begin(), corners.end()}};
-                       return milliseconds;
-                     });
+      add_decimation(
+          programme, wanted, std::string("vkmesh, ") + removal.name,
+          [&mesh = wanted.mesh, target = wanted.target, &removal](Surface& surface) -> Result<double> {
+            DecimateOptions options;
+            options.operation = removal.operation;
+            options.target_faces = target;
+            tbb::task_arena threads(removal.threads);
+            threads.initialize();
+            const Stopwatch watch;
+            auto decimated = threads.execute([&] {
+              return decimate(TriangleSurface{mesh.points, mesh.corners}, options);
+            });
+            const double milliseconds = watch.milliseconds();
+            if (!decimated) return tl::unexpected<Error>(decimated.error());
+            const auto corners = decimated->mesh.origins();
+            surface = {std::move(decimated->positions), {corners.begin(), corners.end()}};
+            return milliseconds;
+          });
   return {};
 }
 

@@ -65,10 +65,11 @@ std::vector<std::string> heading(const Report& report) {
     libraries += (libraries.empty() ? "" : "; ") + library.name + " " + library.version;
   lines.push_back(libraries);
   if (has_step(report, "decimation")) {
-    lines.push_back(format(
-        "decimation: arrays to arrays, one thread; errors are two-sided distances over %zu samples each "
-        "way, over the bounding box's diagonal",
-        report.samples));
+    lines.push_back(
+        format("decimation: arrays to arrays, one thread unless said; errors are two-sided distances over "
+               "%zu samples each "
+               "way, over the bounding box's diagonal",
+               report.samples));
     lines.push_back(
         "bytes a vertex: what the process held at most in the first run beyond the input, the result "
         "included; "
