@@ -115,7 +115,7 @@ void check_seams(const Textured& input, const Decimated& result) {
   CHECK(after.charts == before.charts);
   CHECK(after.components == before.components);
   CHECK(after.loops() == before.loops());
-  for (const std::size_t d : {1, 3, 4, 5}) CHECK(after.of_degree(d) == before.of_degree(d));
+  for (const std::size_t d : {1U, 3U, 4U, 5U}) CHECK(after.of_degree(d) == before.of_degree(d));
   REQUIRE(result.attributes.values.size() == 1);
   const std::vector<float>& values = result.attributes.values[0];
   REQUIRE(values.size() == input.components * result.attributes.source_corner.size());
