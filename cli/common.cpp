@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -334,6 +335,17 @@ void add_consolidate_options(CLI::App& command, CommonOptions& options) {
   command.add_flag_callback(
       "--refuse-non-orientable", [&consolidation] { consolidation.cut_non_orientable = false; },
       "Refuse a surface like the Moebius strip, instead of cutting it open along a seam");
+}
+
+Result<std::pair<std::string, double>> named_weight(const std::string& option, const std::string& text,
+                                                    double default_weight) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) return std::pair(text, default_weight);
+  double weight = 0;
+  const auto [end, error] = std::from_chars(text.data() + equals + 1, text.data() + text.size(), weight);
+  if (error != std::errc() || end != text.data() + text.size() || !(weight >= 0 && std::isfinite(weight)))
+    return fail(ErrorCode::kUsage, option + " " + text + ": the weight must be a number of at least 0");
+  return std::pair(text.substr(0, equals), weight);
 }
 
 CLI::Validator number_between(double low, double high) {

@@ -132,6 +132,11 @@ void add_consolidate_options(CLI::App& command, CommonOptions& options);
 /// Finds out whether a file can be written there at all. "-" can. Errors: kNotWritable.
 [[nodiscard]] Result<void> check_place(const std::string& file);
 
+/// What NAME or NAME=WEIGHT says; errors name the option.
+[[nodiscard]] Result<std::pair<std::string, double>> named_weight(const std::string& option,
+                                                                  const std::string& text,
+                                                                  double default_weight);
+
 /// Turns a name into the value that it stands for, and refuses what is none of them.
 template <class Enum>
 [[nodiscard]] CLI::Validator one_of(const std::map<std::string, Enum>& values) {

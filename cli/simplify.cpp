@@ -1,10 +1,13 @@
 // vkmesh simplify: fewer triangles, by quadric error.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/triangulate.h>
@@ -12,6 +15,7 @@
 #include "backend.h"
 #include "commands.h"
 #include "simplify_attributes.h"
+#include "simplify_criteria.h"
 
 namespace vkmesh::cli {
 namespace {
@@ -31,20 +35,41 @@ struct SimplifyOptions {
   double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
 };
 
-std::string why(DecimateStop stop, const SimplifyOptions& options) {
+/// "the link condition holds 12, …", the most first.
+std::string names_of(const Decimated::Held& held) {
+  std::vector<std::pair<std::size_t, const char*>> all = {
+      {held.link, "the manifold would break"}, {held.fold_over, "a face would fold over"},
+      {held.error, "the error is too large"},  {held.locked, "locked"},
+      {held.boundary, "of the boundary"},      {held.seam, "a seam would break"},
+      {held.criterion, "a bound forbids it"}};
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (const auto& [count, name] : all)
+    if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " (" + name + ")";
+  return text.empty() ? "nothing" : text;
+}
+
+std::string why(DecimateStop stop, const SimplifyOptions& options, const Decimated::Held& held) {
   switch (stop) {
     case DecimateStop::kTargetReached:
       return "the target was reached";
     case DecimateStop::kErrorBound:
-      return "what is left is illegal or would exceed the error of " +
+      return "the error of " +
              (options.error ? brief(*options.error)
-                            : brief(100 * options.relative_error.value_or(0)) + " % of the diagonal");
+                            : brief(100 * options.relative_error.value_or(0)) + " % of the diagonal") +
+             " holds what is left: " + names_of(held);
     case DecimateStop::kTimeLimit:
       return "the time was up";
     case DecimateStop::kNoLegalCollapse:
-      return "no collapse is left that keeps the surface manifold and folds no face over";
+      return "what is left is illegal: " + names_of(held);
   }
   return {};
+}
+
+Json to_json(const Decimated::Held& held) {
+  return {{"link", held.link},          {"fold_over", held.fold_over}, {"error", held.error},
+          {"locked", held.locked},      {"boundary", held.boundary},   {"seam", held.seam},
+          {"criterion", held.criterion}};
 }
 
 DecimateOptions decimation_of(const SimplifyOptions& options) {
@@ -91,7 +116,7 @@ Result<void> lock_marked(const IndexedFaceSet& mesh, const std::string& name, De
   return {};
 }
 
-Result<void> run(Job& job, const SimplifyOptions& options) {
+Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteria& criteria) {
   if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
       !options.time_limit)
     return fail(ErrorCode::kUsage,
@@ -117,6 +142,7 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
     mesh = std::move(cut.mesh);
   }
   DecimateOptions decimation = decimation_of(options);
+  VKMESH_TRY(decimation.criteria, criteria.criteria());
   if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
   VKMESH_TRY(const SimplifyAttributes attributes,
              SimplifyAttributes::of(job, mesh, options.attributes, points_stay,
@@ -148,28 +174,35 @@ Result<void> run(Job& job, const SimplifyOptions& options) {
   }
   const double ratio =
       faces == 0 ? 1.0 : static_cast<double>(output.face_count()) / static_cast<double>(faces);
-  job.json()["result"] = {{"stop", name_of(decimated.stop)},
-                          {"operation", options.operation},
-                          {"error", decimated.error},
-                          {"relative_error", decimated.relative_error},
-                          {"attributes", attributes.names()},
-                          {"attribute_error", decimated.attribute_error},
-                          {"ratio", ratio},
-                          {"collapses", decimated.collapses},
-                          {"pruned_components", decimated.pruned_components},
-                          {"pruned_faces", decimated.pruned_faces},
-                          {"rejected_link", decimated.rejected_link},
-                          {"rejected_fold_over", decimated.rejected_fold_over},
-                          {"rejected_error", decimated.rejected_error},
-                          {"rejected_locked", decimated.rejected_locked},
-                          {"rejected_seam", decimated.rejected_seam}};
+  job.json()["result"] = {
+      {"stop", name_of(decimated.stop)},
+      {"operation", options.operation},
+      {"error", decimated.error},
+      {"relative_error", decimated.relative_error},
+      {"attributes", attributes.names()},
+      {"attribute_error", decimated.attribute_error},
+      {"ratio", ratio},
+      {"collapses", decimated.collapses},
+      {"pruned_components", decimated.pruned_components},
+      {"pruned_faces", decimated.pruned_faces},
+      {"rejected_link", decimated.rejected_link},
+      {"rejected_fold_over", decimated.rejected_fold_over},
+      {"rejected_error", decimated.rejected_error},
+      {"rejected_locked", decimated.rejected_locked},
+      {"rejected_seam", decimated.rejected_seam},
+      {"rejected_criterion", decimated.rejected_criterion},
+      {"held", to_json(decimated.held)},
+      {"distance_bound", decimated.distance_bound ? Json(*decimated.distance_bound) : Json(nullptr)}};
   job.row("simplified", "to " + brief(100 * ratio) + " % of " + count_of(faces, "triangle") +
                             "; largest error " + brief(decimated.error) + " in units of the file, " +
                             brief(100 * decimated.relative_error) + " % of the diagonal");
+  if (decimated.distance_bound)
+    job.row("distance", "no point of either surface is farther than " + brief(*decimated.distance_bound) +
+                            " from the other");
   if (decimated.pruned_components > 0)
     job.row("pruned", count_of(decimated.pruned_components, "component") + " of " +
                           count_of(decimated.pruned_faces, "triangle"));
-  job.row("stopped", why(decimated.stop, options));
+  job.row("stopped", why(decimated.stop, options, decimated.held));
   job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
                            " that would break the manifold, " + grouped(decimated.rejected_fold_over) +
                            " that would fold a face over" +
@@ -209,6 +242,7 @@ void add_simplify(CLI::App& app, Program& program) {
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
   const auto options = std::make_shared<SimplifyOptions>();
+  const auto criteria = std::make_shared<SimplifyCriteria>();
   command
       ->add_option("--operation", options->operation,
                    "edge-collapse (default): both ends become one point, which may be new;\n"
@@ -293,9 +327,10 @@ void add_simplify(CLI::App& app, Program& program) {
       ->type_name("SIZE")
       ->check(number_between(0, std::numeric_limits<double>::max()))
       ->excludes(prune);
-  command->callback([&program, options] {
+  add_simplify_criteria(*command, criteria);
+  command->callback([&program, options, criteria] {
     program.command = "simplify";
-    program.action = [options](Job& job) { return run(job, *options); };
+    program.action = [options, criteria](Job& job) { return run(job, *options, *criteria); };
   });
 }
 

@@ -52,16 +52,8 @@ using Weights = std::map<std::string, double>;
 Result<Weights> weights_by_name(const std::vector<std::string>& given) {
   Weights weights;
   for (const std::string& text : given) {
-    const std::size_t equals = text.rfind('=');
-    double weight = kDefaultWeight;
-    if (equals != std::string::npos) {
-      const char* const begin = text.c_str() + equals + 1;
-      char* end = nullptr;
-      weight = std::strtod(begin, &end);
-      if (end == begin || *end != '\0' || !(weight >= 0 && std::isfinite(weight)))
-        return fail(ErrorCode::kUsage, "--attribute " + text + ": the weight must be a number of at least 0");
-    }
-    weights[text.substr(0, equals)] = weight;
+    VKMESH_TRY(const auto named, named_weight("--attribute", text, kDefaultWeight));
+    weights[named.first] = named.second;
   }
   return weights;
 }

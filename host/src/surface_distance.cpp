@@ -13,6 +13,7 @@
 #include <vkmesh/surface_distance.h>
 
 #include "catching.h"
+#include "triangle_distance.h"
 
 namespace vkmesh {
 namespace {
@@ -23,35 +24,11 @@ using glm::dot;
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kSamplesBetweenReports = 8192;
 
-struct Triangle {
-  DVec3 a, b, c;
-};
+using detail::Triangle, detail::squared_distance;
 
 Triangle triangle(const TriangleSurface& surface, std::size_t f) {
   return {DVec3(surface.points[surface.corners[3 * f]]), DVec3(surface.points[surface.corners[3 * f + 1]]),
           DVec3(surface.points[surface.corners[3 * f + 2]])};
-}
-
-double squared_distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b) {
-  const DVec3 along = b - a, from_a = p - a;
-  const double length2 = dot(along, along);
-  const double t = length2 > 0 ? std::clamp(dot(from_a, along) / length2, 0.0, 1.0) : 0.0;
-  const DVec3 rest = from_a - t * along;
-  return dot(rest, rest);
-}
-
-/// To the plane where p lies over the triangle, else to the nearest edge: a triangle without area is its
-/// edges.
-double squared_distance(const DVec3& p, const Triangle& t) {
-  const DVec3 normal = cross(t.b - t.a, t.c - t.a);
-  const double area2 = dot(normal, normal);
-  if (area2 > 0 && dot(cross(t.b - t.a, p - t.a), normal) >= 0 &&
-      dot(cross(t.c - t.b, p - t.b), normal) >= 0 && dot(cross(t.a - t.c, p - t.c), normal) >= 0) {
-    const double height = dot(p - t.a, normal);
-    return height * height / area2;
-  }
-  return std::min({squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
-                   squared_distance_to_segment(p, t.c, t.a)});
 }
 
 /// Boxes around halves of the triangles, halved again: nearest-triangle search.
@@ -64,7 +41,7 @@ class Tree {
     std::vector<Vec3> centres(count);
     for (std::size_t f = 0; f < count; ++f) {
       const Triangle t = triangle(surface, f);
-      centres[f] = Vec3((t.a + t.b + t.c) / 3.0);
+      centres[f] = Vec3((t[0] + t[1] + t[2]) / 3.0);
     }
     nodes_.reserve(2 * (count / kLeafSize + 1));
     split(surface, centres, order, 0, static_cast<std::uint32_t>(count));
@@ -157,12 +134,12 @@ class Tree {
 };
 
 double area(const Triangle& t) {
-  const DVec3 normal = cross(t.b - t.a, t.c - t.a);
+  const DVec3 normal = cross(t[1] - t[0], t[2] - t[0]);
   return 0.5 * std::sqrt(dot(normal, normal));
 }
 
 DVec3 normal_of(const Triangle& t) {
-  return cross(t.b - t.a, t.c - t.a);
+  return cross(t[1] - t[0], t[2] - t[0]);
 }
 
 /// Bounds the one-sided Hausdorff distance from one surface to the triangles of a tree.
@@ -282,7 +259,7 @@ Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSur
       u = 1 - u;
       v = 1 - v;
     }
-    const double d2 = tree.nearest(t.a + u * (t.b - t.a) + v * (t.c - t.a), hint);
+    const double d2 = tree.nearest(t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]), hint);
     const DVec3 here = normal_of(t), there = normal_of(tree.at(hint));
     if (dot(here, here) > 0 && dot(there, there) > 0) {
       const DVec3 across = cross(here, there);

@@ -17,12 +17,13 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/decimation/decimate_index_buffer.h>
 
+#include "decimate_support.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-using test::half_edges;
+using test::half_edges, test::run;
 
 /// A mesh with one attribute, whose values its corners name.
 struct Textured {
@@ -35,14 +36,6 @@ struct Textured {
     return {components, values, corners, weight, AttributeKind::kPlain};
   }
 };
-
-Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
-  auto result = decimate(half_edges(mesh), mesh.points, options);
-  if (!result) FAIL(result.error().describe());
-  const auto valid = validate(result->mesh);
-  if (!valid) FAIL(valid.error().describe());
-  return std::move(*result);
-}
 
 /// Each way that takes attributes.
 std::vector<DecimateOptions> ways() {

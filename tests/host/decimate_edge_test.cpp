@@ -22,34 +22,14 @@
 #include <vkmesh/passes/dihedral_angles.h>
 #include <vkmesh/triangulate.h>
 
+#include "decimate_support.h"
 #include "support/data.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-using test::half_edges;
-
-template <class Point>
-BasicDecimated<Point> run(const HalfEdgeMesh& mesh, const std::vector<Point>& points,
-                          const DecimateOptions& options) {
-  auto result = decimate(mesh, points, options);
-  if (!result) FAIL(result.error().describe());
-  return std::move(*result);
-}
-Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
-  return run(half_edges(mesh), mesh.points, options);
-}
-
-/// Each way to collapse, and vertex removal.
-std::vector<DecimateOptions> ways() {
-  std::vector<DecimateOptions> all(5);
-  all[1].placement = CollapsePlacement::kMidpoint;
-  all[2].placement = CollapsePlacement::kEndpoint;
-  all[3].operation = DecimateOperation::kHalfEdgeCollapse;
-  all[4].operation = DecimateOperation::kVertexRemoval;
-  return all;
-}
+using test::half_edges, test::run, test::ways;
 
 template <class A, class B>
 DVec3 cross(const A& a, const B& b) {

@@ -10,17 +10,13 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/topology.h>
 
+#include "decimate_support.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
-  auto result = decimate(test::half_edges(mesh), mesh.points, options);
-  if (!result) FAIL(result.error().describe());
-  REQUIRE(validate(result->mesh));
-  return std::move(*result);
-}
+using test::run;
 
 DecimateOperation any_operation() {
   return GENERATE(DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse,

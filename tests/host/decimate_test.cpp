@@ -20,29 +20,20 @@
 #include <vkmesh/surface_distance.h>
 #include <vkmesh/triangulate.h>
 
+#include "decimate_support.h"
 #include "support/data.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-using test::half_edges;
+using test::half_edges, test::run;
 
 int euler_characteristic(const HalfEdgeMesh& mesh) {
   std::size_t isolated = 0;
   for (const std::uint32_t leading : mesh.leadings()) isolated += leading == kInvalid ? 1 : 0;
   return static_cast<int>(mesh.vertex_count() - isolated) - static_cast<int>(mesh.edge_count()) +
          static_cast<int>(mesh.face_count());
-}
-
-Decimated run(const HalfEdgeMesh& mesh, std::span<const Vec3> points, const DecimateOptions& options) {
-  auto result = decimate(mesh, points, options);
-  if (!result) FAIL(result.error().describe());
-  return std::move(*result);
-}
-
-Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
-  return run(half_edges(mesh), mesh.points, options);
 }
 
 /// Those that move no point. Edge collapses have tests of their own in decimate_edge_test.cpp.

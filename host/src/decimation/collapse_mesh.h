@@ -93,6 +93,15 @@ class CollapseMesh {
   /// All half-edges are less, those of ghosts included.
   [[nodiscard]] std::size_t half_edge_bound() const { return 4 * (face_count_ + ghosts_); }
   [[nodiscard]] bool is_ghost(std::uint32_t h) const { return h / 4 >= face_count_; }
+  /// Of a vertex that is not isolated. O(valence).
+  [[nodiscard]] bool on_boundary(std::uint32_t v) const {
+    std::uint32_t h = vertices[v].leading;
+    do {
+      if (is_ghost(h)) return true;
+      h = around_vertex(h);
+    } while (h != vertices[v].leading);
+    return false;
+  }
 
   [[nodiscard]] static std::uint32_t next(std::uint32_t h) { return (h & 3u) == 2 ? h - 2 : h + 1; }
   [[nodiscard]] static std::uint32_t previous(std::uint32_t h) { return (h & 3u) == 0 ? h + 2 : h - 1; }

@@ -15,6 +15,7 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_order.h"
 #include "decimation/collapse_queues.h"
+#include "decimation/criteria.h"
 #include "decimation/driver.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/frame.h"
@@ -31,25 +32,33 @@ namespace {
 
 using namespace detail;
 
+template <class Placement, bool kAttributes>
+Result<Outcome> run_collapses(DecimationState& state, bool exact, const Progress& progress) {
+  if (state.criteria != nullptr && state.criteria->ranks())
+    return run_removals<EdgeCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state, progress);
+  if constexpr (Placement::kMayFall != MayFall::kAll)
+    if (!exact) return run_removals<EdgeCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
+  return run_removals<EdgeCollapses<Placement, ExactQueue, kAttributes>>(state, progress);
+}
+
 template <bool kAttributes>
 Result<Outcome> run_edge_collapses(DecimationState& state, const DecimateOptions& options, bool exact,
                                    const Progress& progress) {
   if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
       options.placement == CollapsePlacement::kEndpoint)
-    return (exact ? run_removals<EdgeCollapses<EndPlacement, ExactQueue, kAttributes>>
-                  : run_removals<EdgeCollapses<EndPlacement, LazyQueue, kAttributes>>)(state, progress);
+    return run_collapses<EndPlacement, kAttributes>(state, exact, progress);
   if (options.placement == CollapsePlacement::kMidpoint)
-    return run_removals<EdgeCollapses<MidpointPlacement, ExactQueue, kAttributes>>(state, progress);
-  return (exact ? run_removals<EdgeCollapses<OptimalPlacement, ExactQueue, kAttributes>>
-                : run_removals<EdgeCollapses<OptimalPlacement, LazyQueue, kAttributes>>)(state, progress);
+    return run_collapses<MidpointPlacement, kAttributes>(state, exact, progress);
+  return run_collapses<OptimalPlacement, kAttributes>(state, exact, progress);
 }
 
 Result<Outcome> run(DecimationState& state, const DecimateOptions& options, CollapseOrder order,
                     const Progress& progress) {
   const bool exact = order == CollapseOrder::kExact;
   if (options.operation == DecimateOperation::kVertexRemoval)
-    return (exact ? run_removals<VertexRemovals<ExactQueue>>
-                  : run_removals<VertexRemovals<LazyQueue>>)(state, progress);
+    return (exact || (state.criteria != nullptr && state.criteria->ranks())
+                ? run_removals<VertexRemovals<ExactQueue>>
+                : run_removals<VertexRemovals<LazyQueue>>)(state, progress);
   return (state.attributes != nullptr ? run_edge_collapses<true>
                                       : run_edge_collapses<false>)(state, options, exact, progress);
 }
@@ -81,6 +90,28 @@ Result<void> check_attributes(const DecimateOptions& options, std::size_t vertic
   return {};
 }
 
+Result<void> check(const DecimateCriteria& criteria) {
+  const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
+  for (const double weight :
+       {criteria.quadric_weight, criteria.density_weight, criteria.aspect_weight, criteria.normal_weight})
+    if (!(weight >= 0 && std::isfinite(weight)))
+      return usage("the weight of a criterion must be at least 0 and finite");
+  if (!(criteria.quadric_weight > 0 || criteria.density_weight > 0 || criteria.aspect_weight > 0 ||
+        criteria.normal_weight > 0))
+    return usage("some criterion needs a weight above 0");
+  for (const auto& distance : {criteria.max_distance, criteria.max_relative_distance})
+    if (distance && !(*distance >= 0)) return usage("max_distance must be at least 0");
+  if (const auto angle = criteria.max_original_normal_deviation;
+      angle && !(*angle > 0 && *angle < std::numbers::pi))
+    return usage("max_original_normal_deviation must lie between 0 and pi");
+  if (criteria.max_aspect_ratio && !(*criteria.max_aspect_ratio >= 1))
+    return usage("max_aspect_ratio must be at least 1");
+  if (criteria.max_edge_length && !(*criteria.max_edge_length > 0))
+    return usage("max_edge_length must be above 0");
+  if (criteria.max_valence && *criteria.max_valence < 3) return usage("max_valence must be at least 3");
+  return {};
+}
+
 Result<void> check(const DecimateOptions& options, std::size_t vertices, std::size_t corners) {
   const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
   if (options.max_error && !(*options.max_error >= 0)) return usage("max_error must be at least 0");
@@ -97,6 +128,7 @@ Result<void> check(const DecimateOptions& options, std::size_t vertices, std::si
     return usage("crease_weight must be at least 0 and finite");
   if (options.crease_angle && !(*options.crease_angle > 0 && *options.crease_angle <= std::numbers::pi))
     return usage("crease_angle must lie between 0 and pi");
+  VKMESH_CHECK(check(options.criteria));
   for (const std::uint32_t v : options.locked_vertices)
     if (v >= vertices) return usage("a locked vertex is not of the mesh");
   for (const std::uint32_t h : options.locked_edges)
@@ -262,15 +294,19 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (options.time_limit)
     limits.seconds =
         *options.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  Criteria criteria(options.criteria, frame, mesh);
   DecimationState state{mesh,
                         limits,
                         mesh.face_count() - pruned.faces,
                         used - pruned.vertices,
                         options.keep_history,
                         {},
-                        attributes ? &*attributes : nullptr};
+                        attributes ? &*attributes : nullptr,
+                        criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
+                        options.boundary == DecimateBoundary::kKept};
   VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
   BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome, state.attributes);
+  if (criteria.watches_distance()) result.distance_bound = criteria.distance(mesh) / frame.scale;
   result.pruned_components = pruned.components;
   result.pruned_faces = pruned.faces;
   return result;

@@ -17,8 +17,11 @@
 namespace vkmesh::detail {
 
 class AttributeQuadrics;
+class Criteria;
 
-enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked, kSeam };
+enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked, kSeam, kCriterion };
+/// How many candidates, by Legality.
+using Census = std::array<std::size_t, 7>;
 
 struct Limits {
   std::size_t faces = 0, vertices = 0;
@@ -38,7 +41,9 @@ struct Outcome {
   DecimateStop stop = DecimateStop::kTargetReached;
   double error2 = 0, attribute_error2 = 0;  // the largest of a removal, mean squares in local units
   std::size_t collapses = 0;
-  std::array<std::size_t, 6> rejected{};  // by Legality
+  Census rejected{};                 // each time that one was
+  Census held{};                     // in the end, where no target was reached
+  std::size_t held_by_boundary = 0;  // of those that are locked
   std::vector<Event> events;
 };
 
@@ -49,6 +54,8 @@ struct DecimationState {
   bool keep_events;
   Outcome outcome;
   AttributeQuadrics* attributes = nullptr;  // none
+  Criteria* criteria = nullptr;             // none
+  bool boundary_kept = false;
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };
@@ -56,7 +63,7 @@ struct DecimationState {
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 
 /// Removes until a limit is met or nothing is left to remove. `Removals` has, as EdgeCollapses does, fill(),
-/// step(), kStep and held_by_error().
+/// step(), kStep and hold(), which tells what holds the candidates that are left.
 template <class Removals>
 Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -81,9 +88,9 @@ Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
       }
     }
     if (!removals.step()) {
-      const bool by_error = state.outcome.rejected[static_cast<std::size_t>(Legality::kError)] > 0;
-      state.outcome.stop =
-          by_error && removals.held_by_error() ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
+      removals.hold();
+      const bool by_error = state.outcome.held[static_cast<std::size_t>(Legality::kError)] > 0;
+      state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
       break;
     }
   }

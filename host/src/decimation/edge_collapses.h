@@ -10,30 +10,37 @@
 #include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/handles.h>
 
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
+#include "decimation/criteria.h"
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
 #include "decimation/face_turns.h"
+#include "decimation/star.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
 
 // Edge collapses by quadric error: where the point goes, and what is known of the cost.
 
-/// Which edges of the kept vertex may cost less after a collapse.
-enum class MayFall { kNone, kOfGone, kAll };
+/// Which edges may cost less after a collapse: none, those that the vertex had which went, those of the kept
+/// vertex, or those of its neighbours, too.
+enum class MayFall { kNone, kOfGone, kAll, kAround };
 
 struct OptimalPlacement {
   static constexpr MayFall kMayFall = MayFall::kNone;
+  static constexpr bool kByCriteria = false;
   static constexpr bool kAtEnds = false;
   static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
 };
 struct MidpointPlacement {
   static constexpr MayFall kMayFall = MayFall::kAll;
+  static constexpr bool kByCriteria = false;
   static constexpr bool kAtEnds = false;
   static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
 };
@@ -41,8 +48,16 @@ struct MidpointPlacement {
 /// that q had before only cost more.
 struct EndPlacement {
   static constexpr MayFall kMayFall = MayFall::kOfGone;
+  static constexpr bool kByCriteria = false;
   static constexpr bool kAtEnds = true;
   static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
+};
+
+/// With weights of Criteria, which look at all faces at both ends.
+template <class Placement>
+struct ByCriteria : Placement {
+  static constexpr MayFall kMayFall = MayFall::kAround;
+  static constexpr bool kByCriteria = true;
 };
 
 /// Edge collapses, the cheapest first.
@@ -71,6 +86,7 @@ class EdgeCollapses {
       std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(3 * kGrain + 1);
       std::vector<float> cost = std::vector<float>(3 * kGrain);
       EdgeBatch batch;
+      Star star;
       std::size_t count = 0;
     };
     const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
@@ -89,8 +105,9 @@ class EdgeCollapses {
       }
       for (std::size_t i = 0; i < block.count; i += EdgeBatch::kSize) {
         const std::size_t some = std::min(EdgeBatch::kSize, block.count - i);
-        evaluate(std::span(block.ids).subspan(i, some), block.batch);
-        std::copy_n(block.batch.cost.begin(), some, &block.cost[i]);
+        const auto ids = std::span(block.ids).subspan(i, some);
+        evaluate(ids, block.batch);
+        rank(ids, block.batch, block.star, &block.cost[i]);
       }
     };
     const auto finish = [&](std::size_t, std::size_t, Block& block) {
@@ -108,16 +125,22 @@ class EdgeCollapses {
     return count > 0;
   }
 
-  /// Whether an edge that was refused for its error still is.
-  [[nodiscard]] bool held_by_error() {
+  /// What holds each edge that is left.
+  void hold() {
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
-        if (!mesh_.alive(h) || !mesh_.parked(h)) continue;
+        if (!mesh_.alive(h) || !mesh_.parked(h) || (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
+          continue;
         evaluate(std::span(&h, 1));
+        due_[0] = due_of(0, h);
+        walk_rings(1);
+        Rings rings;
         const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
-        if (exceeds_error(p, q, geometric_cost(p, q, due_of(0, h)))) return true;
+        const Legality why = judge(0, p, q, rings);
+        ++state_.outcome.held[static_cast<std::size_t>(why)];
+        if (why == Legality::kLocked && state_.boundary_kept && mesh_.on_boundary(p) && mesh_.on_boundary(q))
+          ++state_.outcome.held_by_boundary;
       }
-    return false;
   }
 
  private:
@@ -138,6 +161,62 @@ class EdgeCollapses {
     Placement::place(batch, edges.size());
   }
 
+  /// Of the edges of the batch.
+  const float* ranks_of(std::span<const std::uint32_t> edges) {
+    if constexpr (!Placement::kByCriteria) return batch_.cost.data();
+    rank(edges, batch_, star_, ranks_.data());
+    return ranks_.data();
+  }
+
+  /// Under which costs the queue holds the edges of a batch.
+  void rank(std::span<const std::uint32_t> edges, const EdgeBatch& batch, Star& star, float* ranks) const {
+    if constexpr (Placement::kByCriteria) {
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        const CollapseVertex &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
+        take_star(star, edges[i],
+                  place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
+        ranks[i] = state_.criteria->cost(batch.cost[i], p.weight + q.weight, star);
+      }
+    } else {
+      std::copy_n(batch.cost.begin(), edges.size(), ranks);
+    }
+  }
+
+  /// Of the kept vertex.
+  [[nodiscard]] static std::array<float, 3> place_of(const CollapseVertex& p, const CollapseVertex& q,
+                                                     std::int32_t end, const std::array<float, 3>& x) {
+    if (end != 0) return end == 1 ? p.position : q.position;
+    return {p.position[0] + x[0], p.position[1] + x[1], p.position[2] + x[2]};
+  }
+
+  /// The faces at both ends of an edge that a collapse to this place changes.
+  void take_star(Star& star, std::uint32_t h, const std::array<float, 3>& place) const {
+    star.clear();
+    const std::uint32_t t = mesh_.twin(h), p = mesh_.origin(h), q = mesh_.origin(t);
+    const DVec3 there = point_of(place), at_p = point_of(vertices_[p].position),
+                at_q = point_of(vertices_[q].position);
+    star.length2 = glm::dot(at_q - at_p, at_q - at_p);
+    star.inner_after.push_back(there);
+    for (const std::uint32_t start : {h, t}) {
+      const DVec3& here = start == h ? at_p : at_q;
+      const bool moves = there != here;
+      if (moves) star.inner_before.push_back(here);
+      std::uint32_t out = start;
+      do {
+        const std::uint32_t f = out >> 2;
+        const bool goes = f == (h >> 2) || f == (t >> 2);
+        if (!mesh_.is_ghost(out) && (goes ? start == h : moves)) {
+          star.before.push_back(face_of(mesh_, f));
+          if (!goes) {
+            star.after.push_back(star.before.back());
+            star.after.back().corner[out & 3u] = there;
+          }
+        }
+        out = mesh_.around_vertex(out);
+      } while (out != start);
+    }
+  }
+
   // What follows happens to all edges of the batch before the next thing does: what one waits for from
   // memory comes while the others are looked at. Conditions that cannot be foretold count, and do not jump.
   void serve(std::span<const std::uint32_t> taken) {
@@ -153,12 +232,13 @@ class EdgeCollapses {
       prefetch(&vertices_[mesh_.target(h)]);
     }
     evaluate(std::span(ids).first(count));
+    const float* const ranks = ranks_of(std::span(ids).first(count));
     std::size_t due = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (queue_.is_due(ids[i], batch_.cost[i])) {
+      if (queue_.is_due(ids[i], ranks[i])) {
         due_[due++] = due_of(i, ids[i]);
       } else {
-        queue_.insert(ids[i], batch_.cost[i]);
+        queue_.insert(ids[i], ranks[i]);
       }
     }
     walk_rings(due);
@@ -260,9 +340,20 @@ class EdgeCollapses {
     if (exceeds_error(p, q, geometric_cost(p, q, due))) return Legality::kError;
     rings = rings_of(i);
     if (!link_condition(rings, q)) return Legality::kLink;
-    return turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, state_.limits.cos_deviation)
-               ? Legality::kFoldOver
-               : Legality::kLegal;
+    if (turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, state_.limits.cos_deviation))
+      return Legality::kFoldOver;
+    return state_.criteria == nullptr || !state_.criteria->bounds() || meets_criteria(due, p, q, rings)
+               ? Legality::kLegal
+               : Legality::kCriterion;
+  }
+
+  [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q, const Rings& rings) {
+    take_star(star_, due.half_edge, place_of(vertices_[p], vertices_[q], due.end, due.x));
+    const std::size_t at_p = rings.p.size() + 1, at_q = rings.q.size() + 1;
+    star_.edges_before =
+        std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
+    star_.edges_after = at_p + at_q - 4 - (mesh_.on_boundary(p) || mesh_.on_boundary(q) ? 1 : 0);
+    return state_.criteria->allow(star_);
   }
 
   /// Of a collapse: its whole cost, but for what attributes have of it.
@@ -315,12 +406,7 @@ class EdgeCollapses {
   void collapse(const Due& due, std::uint32_t p, std::uint32_t q, const Rings& rings) {
     std::uint32_t h = due.half_edge;
     CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
-    std::array<float, 3> place;
-    if (due.end == 0) {
-      for (std::size_t k = 0; k < 3; ++k) place[k] = vp.position[k] + due.x[k];
-    } else {
-      place = due.end == 1 ? vp.position : vq.position;
-    }
+    const std::array<float, 3> place = place_of(vp, vq, due.end, due.x);
     // Which of the two goes: what was chosen; else that of fewer neighbours, which is less work.
     bool keep_p =
         due.end == 0 ? rings.p.size() > rings.q.size() ||
@@ -368,6 +454,7 @@ class EdgeCollapses {
                                        place,
                                        kept.has(CollapseVertex::kMoved),
                                        {one.source, other.source}});
+    if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(star_);
     erase_queued(h);
     erase_queued(t);
     const std::uint32_t to_a = mesh_.twin(CollapseMesh::previous(h)),
@@ -383,6 +470,7 @@ class EdgeCollapses {
     join(to_a, from_a);
     join(to_b, from_b);
     if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
+    if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(q_now);
     if constexpr (Placement::kMayFall == MayFall::kOfGone)
       refresh(q_now, keep_p ? rings.q.size() : rings.p.size());
     revive(q_now, rings);
@@ -423,8 +511,28 @@ class EdgeCollapses {
         h = mesh_.around_vertex(h);
       }
       evaluate(std::span(ids).first(count));
-      for (std::size_t i = 0; i < count; ++i) queue_.insert(ids[i], batch_.cost[i]);
+      const float* const ranks = ranks_of(std::span(ids).first(count));
+      for (std::size_t i = 0; i < count; ++i) queue_.insert(ids[i], ranks[i]);
     }
+  }
+
+  // All edges at v and at its neighbours cost something else now.
+  void refresh_around(std::uint32_t v) {
+    const std::uint32_t start = vertices_[v].leading;
+    std::uint32_t h = start;
+    do {
+      if (const std::uint32_t r = mesh_.target(h); r != mesh_.apex()) {
+        std::size_t edges = 0;
+        const std::uint32_t first = vertices_[r].leading;
+        std::uint32_t out = first;
+        do {
+          ++edges;
+          out = mesh_.around_vertex(out);
+        } while (out != first);
+        refresh(r, edges);
+      }
+      h = mesh_.around_vertex(h);
+    } while (h != start);
   }
 
   // Parked edges near v may have become legal.
@@ -454,6 +562,8 @@ class EdgeCollapses {
   LargeArray<CollapseVertex>& vertices_;
   Queue queue_;
   EdgeBatch batch_;
+  EdgeBatch::Lanes ranks_;
+  Star star_;
   std::array<Due, Queue::kBatch> due_;
   std::array<Walked, 2 * Queue::kBatch> walked_;  // those of p and q of each due edge
   std::vector<std::uint32_t> touched_, sorted_, ring_p_, ring_q_;

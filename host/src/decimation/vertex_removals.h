@@ -10,11 +10,15 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include <vkmesh/handles.h>
 
 #include "decimation/collapse_mesh.h"
+#include "decimation/criteria.h"
 #include "decimation/driver.h"
 #include "decimation/hole.h"
+#include "decimation/star.h"
 
 namespace vkmesh::detail {
 
@@ -43,7 +47,7 @@ class VertexRemovals {
     const auto flush = [&] {
       errors.fill(kNone);
       walk(std::span(ids).first(count), [](std::uint32_t) {});
-      evaluate([&](const Star& star, std::size_t lane) { errors[index_of(star)] = holes_.error[lane]; });
+      evaluate([&](const HoleStar& star, std::size_t lane) { errors[index_of(star)] = rank(star, lane); });
       for (std::size_t i = 0; i < count; ++i) {  // in the order of the input
         if (errors[i] < kNone)
           queue_.fill(ids[i], errors[i]);
@@ -73,14 +77,14 @@ class VertexRemovals {
     walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
     due_.clear();
     std::array<Removal*, kStars> in_order{};
-    evaluate([&](const Star& star, std::size_t lane) {
-      const float error = holes_.error[lane];
-      if (!(error < kNone))
+    evaluate([&](const HoleStar& star, std::size_t lane) {
+      const float cost = rank(star, lane);
+      if (!(cost < kNone))
         park(star.vertex, Legality::kFoldOver);
-      else if (queue_.is_due(star.vertex, error))
+      else if (queue_.is_due(star.vertex, cost))
         in_order[index_of(star)] = &due_.emplace_back(removal_of(star, lane));
       else
-        queue_.insert(star.vertex, error);
+        queue_.insert(star.vertex, cost);
     });
     find_existing();
     for (Removal* const removal : in_order) {
@@ -96,20 +100,25 @@ class VertexRemovals {
     return count > 0;
   }
 
-  /// Whether a vertex that was refused for its error still is.
-  [[nodiscard]] bool held_by_error() {
-    bool held = false;
-    for (std::uint32_t v = 0; v < mesh_.apex() && !held; ++v) {
-      if (!vertices_[v].alive() || !vertices_[v].has(CollapseVertex::kHasParked)) continue;
-      walk(std::span(&v, 1), [](std::uint32_t) {});
-      evaluate([&](const Star& star, std::size_t lane) {
-        if (!(holes_.error[lane] < kNone)) return;
-        Removal removal = removal_of(star, lane);
-        avoid_existing(removal);
-        held = removal.error < kNone && too_far(v, removal.error);
-      });
+  /// What holds each vertex that is left.
+  void hold() {
+    const auto count = [&](Legality why) { ++state_.outcome.held[static_cast<std::size_t>(why)]; };
+    for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
+      if (!vertices_[v].alive()) continue;
+      if (vertices_[v].has(CollapseVertex::kLocked)) {
+        count(Legality::kLocked);
+        if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.held_by_boundary;
+      } else if (vertices_[v].has(CollapseVertex::kHasParked)) {
+        walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
+        evaluate([&](const HoleStar& star, std::size_t lane) {
+          if (!(holes_.error[lane] < kNone)) return count(Legality::kFoldOver);
+          Removal removal = removal_of(star, lane);
+          if (is_pillow(star)) return count(Legality::kLink);
+          avoid_existing(removal);
+          count(removal.error < kNone ? judge(removal) : Legality::kLink);
+        });
+      }
     }
-    return held;
   }
 
  private:
@@ -120,7 +129,7 @@ class VertexRemovals {
 
   /// What leaves a vertex counter-clockwise, and where to. A boundary vertex has the apex at the end of the
   /// last.
-  struct Star {
+  struct HoleStar {
     std::uint32_t vertex, edges;  // edges: how many
     bool closed;
     std::array<std::uint32_t, kMost + 1> edge, target;
@@ -140,7 +149,7 @@ class VertexRemovals {
     std::array<float, 3> share{};
   };
   struct Removal {
-    const Star* star;
+    const HoleStar* star;
     float error;
     Triangles triangles;
     Heirs heirs;
@@ -171,7 +180,7 @@ class VertexRemovals {
       left = 0;
       for (std::size_t i = 0; i < now; ++i) {
         const std::uint32_t h = at[i], out = mesh_.around_vertex(h), v = mesh_.target(h);
-        Star& star = walked_[who[i]];
+        HoleStar& star = walked_[who[i]];
         prefetch(&vertices_[v]);
         prefetch(&mesh_.face(out));
         star.edge[step] = h;
@@ -187,7 +196,7 @@ class VertexRemovals {
     for (std::size_t i = 0; i < left; ++i) walked_[who[i]].edges = kTooMany;
     std::array<std::uint32_t, kMost + 2> first{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      Star& star = walked_[i];
+      HoleStar& star = walked_[i];
       if (star.edges == kTooMany || star.neighbours() > kMost) {
         star.edges = kTooMany;
         has_too_many(star.vertex);
@@ -204,11 +213,11 @@ class VertexRemovals {
   }
 
   /// Of a star among the vertices that were walked around.
-  [[nodiscard]] std::size_t index_of(const Star& star) const {
+  [[nodiscard]] std::size_t index_of(const HoleStar& star) const {
     return static_cast<std::size_t>(&star - walked_.data());
   }
 
-  void put_apex_last(Star& star) const {
+  void put_apex_last(HoleStar& star) const {
     const auto end = star.target.begin() + star.edges;
     const auto turn = std::find(star.target.begin(), end, mesh_.apex()) - star.target.begin() + 1;
     std::rotate(star.target.begin(), star.target.begin() + turn, end);
@@ -227,7 +236,7 @@ class VertexRemovals {
       }
   }
 
-  void set(HoleBatch& holes, std::size_t lane, const Star& star) const {
+  void set(HoleBatch& holes, std::size_t lane, const HoleStar& star) const {
     const CollapseVertex& v = vertices_[star.vertex];
     for (std::size_t i = 0; i < star.neighbours(); ++i) {
       const auto& r = vertices_[star.target[i]].position;
@@ -241,7 +250,7 @@ class VertexRemovals {
 
   /// Calls use(a, b) for the neighbours at the ends of each new edge.
   template <class Use>
-  static void for_new_edges(const Star& star, const Triangles& triangles, Use&& use) {
+  static void for_new_edges(const HoleStar& star, const Triangles& triangles, Use&& use) {
     for (const auto& [a, b, c] : triangles.all()) {
       if (b > a + 1) use(a, b);
       if (c > b + 1 && c < star.neighbours()) use(b, c);
@@ -253,7 +262,7 @@ class VertexRemovals {
   void find_existing() {
     searches_.clear();
     for (Removal& removal : due_) {
-      const Star& star = *removal.star;
+      const HoleStar& star = *removal.star;
       for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {
         const std::uint32_t at = beyond(star, a > 0 ? a - 1 : star.edges - 1);
         prefetch(&mesh_.face(at));
@@ -280,11 +289,10 @@ class VertexRemovals {
 
   /// Removes a vertex, if that is legal.
   void attempt(Removal& removal) {
-    const Star& star = *removal.star;
+    const HoleStar& star = *removal.star;
     const std::uint32_t v = star.vertex;
     if (too_far(v, removal.error)) return park(v, Legality::kError);
-    // The faces across from v are one already: what is left would be a triangle on itself.
-    if (star.edges == 3 && (beyond(star, 0) >> 2) == (beyond(star, 1) >> 2)) return park(v, Legality::kLink);
+    if (is_pillow(star)) return park(v, Legality::kLink);
     for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
       const std::uint32_t p = star.target[a], q = star.target[b];
       if (vertices_[p].has(CollapseVertex::kTouched) && vertices_[q].has(CollapseVertex::kTouched))
@@ -293,16 +301,85 @@ class VertexRemovals {
     if (removal.has_existing) {
       avoid_existing(removal);
       if (!(removal.error < kNone)) return park(v, Legality::kLink);
-      if (!queue_.is_due(v, removal.error)) return queue_.insert(v, removal.error);
-      if (too_far(v, removal.error)) return park(v, Legality::kError);
+      const float cost = cost_of(removal);
+      if (!queue_.is_due(v, cost)) return queue_.insert(v, cost);
     }
-    if (folds_over(star, removal.triangles)) return park(v, Legality::kFoldOver);
+    if (const Legality legality = judge(removal); legality != Legality::kLegal) return park(v, legality);
     remove(removal);
+  }
+
+  /// The faces across from v are one already: what is left would be a triangle on itself.
+  [[nodiscard]] bool is_pillow(const HoleStar& star) const {
+    return star.edges == 3 && (beyond(star, 0) >> 2) == (beyond(star, 1) >> 2);
+  }
+
+  /// Of a removal that makes no edge which is there.
+  [[nodiscard]] Legality judge(const Removal& removal) {
+    const HoleStar& star = *removal.star;
+    if (too_far(star.vertex, removal.error)) return Legality::kError;
+    if (folds_over(star, removal.triangles)) return Legality::kFoldOver;
+    const bool bound = state_.criteria != nullptr && state_.criteria->bounds();
+    return bound && !meets_criteria(star, removal.triangles) ? Legality::kCriterion : Legality::kLegal;
+  }
+
+  /// What the queue holds a vertex under; kNone when it can not go.
+  [[nodiscard]] float rank(const HoleStar& star, std::size_t lane) {
+    const float error = holes_.error[lane];
+    if (state_.criteria == nullptr || !state_.criteria->ranks() || !(error < kNone)) return error;
+    return cost_of(removal_of(star, lane));
+  }
+  [[nodiscard]] float cost_of(const Removal& removal) {
+    if (state_.criteria == nullptr || !state_.criteria->ranks()) return removal.error;
+    take_faces(*removal.star, removal.triangles);
+    return state_.criteria->cost(removal.error, vertices_[removal.star->vertex].weight, faces_);
+  }
+
+  [[nodiscard]] bool meets_criteria(const HoleStar& star, const Triangles& triangles) {
+    take_faces(star, triangles);
+    std::array<std::size_t, kMost> gained{};
+    for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) { ++gained[a], ++gained[b]; });
+    for (std::size_t i = 0; i < star.neighbours(); ++i)
+      if (gained[i] > 1)
+        faces_.edges_after = std::max(faces_.edges_after, edges_at(star.target[i]) - 1 + gained[i]);
+    return state_.criteria->allow(faces_);
+  }
+
+  /// Of the mesh's own.
+  [[nodiscard]] std::size_t edges_at(std::uint32_t v) const {
+    std::size_t edges = 0;
+    std::uint32_t h = vertices_[v].leading;
+    do {
+      edges += mesh_.target(h) != mesh_.apex() ? 1 : 0;
+      h = mesh_.around_vertex(h);
+    } while (h != vertices_[v].leading);
+    return edges;
+  }
+
+  /// What a removal changes, into faces_: new faces get the records of the old ones in turn.
+  void take_faces(const HoleStar& star, const Triangles& triangles) {
+    faces_.clear();
+    const DVec3 here = point_of(vertices_[star.vertex].position);
+    faces_.inner_before.push_back(here);
+    double length2 = 0;
+    for (std::size_t i = 0; i < star.neighbours(); ++i) {
+      const DVec3 way = point_of(vertices_[star.target[i]].position) - here;
+      length2 += glm::dot(way, way);
+    }
+    faces_.length2 = length2 / static_cast<double>(star.neighbours());
+    for (const std::uint32_t h : std::span(star.edge).first(star.edges))
+      if (!mesh_.is_ghost(h)) faces_.before.push_back(face_of(mesh_, h >> 2));
+    for (const auto& corners : triangles.all()) {
+      if (corners[2] == star.neighbours()) continue;  // closes the boundary
+      Star::Face face{{}, star.edge[faces_.after.size()] >> 2};
+      for (std::size_t i = 0; i < 3; ++i)
+        face.corner[i] = point_of(vertices_[star.target[corners[i]]].position);
+      faces_.after.push_back(face);
+    }
   }
 
   /// Fills the hole again, without the edges that the mesh has already.
   void avoid_existing(Removal& removal) {
-    const Star& star = *removal.star;
+    const HoleStar& star = *removal.star;
     set(other_, 0, star);
     while (bar_existing(star, removal.triangles)) {
       fill_holes(other_, star.neighbours(), state_.limits.cos_deviation);
@@ -319,15 +396,16 @@ class VertexRemovals {
   }
 
   /// Beyond the face between neighbour i and the next.
-  [[nodiscard]] std::uint32_t beyond(const Star& star, std::size_t i) const {
+  [[nodiscard]] std::uint32_t beyond(const HoleStar& star, std::size_t i) const {
     return mesh_.twin(CollapseMesh::next(star.edge[i]));
   }
 
-  [[nodiscard]] Removal removal_of(const Star& star, std::size_t lane) const {
+  [[nodiscard]] Removal removal_of(const HoleStar& star, std::size_t lane) const {
     return {&star, holes_.error[lane], triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false};
   }
 
-  [[nodiscard]] static Triangles triangles_of(const HoleBatch& holes, std::size_t lane, const Star& star) {
+  [[nodiscard]] static Triangles triangles_of(const HoleBatch& holes, std::size_t lane,
+                                              const HoleStar& star) {
     Triangles triangles;
     std::array<std::array<std::uint8_t, 2>, kMost> parts;
     std::size_t left = 0;
@@ -345,7 +423,7 @@ class VertexRemovals {
   }
 
   /// Bars each new edge that the mesh has already in other_; whether there was one.
-  bool bar_existing(const Star& star, const Triangles& triangles) {
+  bool bar_existing(const HoleStar& star, const Triangles& triangles) {
     bool found = false;
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) {
       if (!has_edge(star.target[a], star.target[b])) return;
@@ -380,7 +458,7 @@ class VertexRemovals {
 
   /// Whether two neighbouring triangles stand against each other by more than 120 degrees and by more than
   /// any did before.
-  [[nodiscard]] bool folds_over(const Star& star, const Triangles& triangles) const {
+  [[nodiscard]] bool folds_over(const HoleStar& star, const Triangles& triangles) const {
     constexpr float kAgainst = -0.5f;
     const std::size_t n = star.neighbours();
     std::array<Vector, kMost> normals;
@@ -408,7 +486,7 @@ class VertexRemovals {
   }
 
   void remove(const Removal& removal) {
-    const Star& star = *removal.star;
+    const HoleStar& star = *removal.star;
     CollapseVertex& gone = vertices_[star.vertex];
     std::uint32_t heir = 0;
     float most = 0;
@@ -423,6 +501,7 @@ class VertexRemovals {
     if (gone.weight > 0)
       state_.outcome.error2 = std::max(state_.outcome.error2,
                                        static_cast<double>(removal.error) / static_cast<double>(gone.weight));
+    if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(faces_);
     const auto faces = mesh_.fill_hole(std::span(star.edge).first(star.edges), removal.triangles.all());
     gone.leading = CollapseVertex::kGone | heir;
     if (state_.keep_events)
@@ -443,7 +522,7 @@ class VertexRemovals {
 
   /// The corners of the triangle that holds v, by v's place in it; on the boundary the ends of the new edge,
   /// by the point nearest to v.
-  [[nodiscard]] Heirs heirs_of(const HoleBatch& holes, std::size_t lane, const Star& star) const {
+  [[nodiscard]] Heirs heirs_of(const HoleBatch& holes, std::size_t lane, const HoleStar& star) const {
     std::size_t a = 0, c = star.neighbours() - 1;
     Heirs heirs{{0, static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c)}};
     if (!star.closed) {
@@ -495,10 +574,11 @@ class VertexRemovals {
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
   Queue queue_;
-  std::array<Star, kStars> walked_;
+  std::array<HoleStar, kStars> walked_;
   std::array<std::uint32_t, kStars> order_;
   std::array<std::uint32_t, kMost + 2> first_{};  // of each number of neighbours, in order_
   HoleBatch holes_, other_;
+  Star faces_;  // that the removal changes which is looked at
   std::vector<Removal> due_;
   std::vector<Search> searches_;
   std::vector<std::uint32_t> touched_;

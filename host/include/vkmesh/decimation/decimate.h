@@ -50,6 +50,41 @@ struct DecimateAttribute {
   AttributeKind kind = AttributeKind::kPlain;
 };
 
+/// Criteria beside the quadric error, which combine. Weights decide what goes first; bounds forbid. What was
+/// beyond a bound before may stay so, but gets no worse.
+struct DecimateCriteria {
+  // What a removal costs is A (quadric_weight² Q + L² (density_weight² + aspect_weight² (1 - 1/R) +
+  // normal_weight² (1 - cos α))), where A is the area that the vertex or edge stands for, Q its mean squared
+  // distance to the planes, L the length of the edge that goes (of a vertex that goes, the root of the mean
+  // square of those at it), R the worst aspect ratio of the new faces, and α the largest angle between a new
+  // face's normal and the nearest of the old ones. Any weight but quadric_weight takes about ten times as
+  // long, since costs may fall; each at least 0.
+  double quadric_weight = 1;  ///< Default 1.
+  /// At 1, a vertex is as dear as one that lies as far from the planes as from its neighbours: vertices go
+  /// where they are dense. Default 0.
+  double density_weight = 0;
+  double aspect_weight = 0;  ///< Against long thin triangles. Default 0.
+  double normal_weight = 0;  ///< Against faces that look where no face looked. Default 0.
+
+  /// No point of the surface comes to lie farther than this from the original surface, and none of that
+  /// farther from the surface: the Hausdorff distance, both ways, to the precision of the coordinates. In
+  /// units of the positions, and as a share of the bounding box's diagonal. Guaranteed, as a sum of
+  /// bounds that is kept with each face; it takes some ten times as long. Default none.
+  std::optional<double> max_distance, max_relative_distance;
+  /// Fill distance_bound without a bound. Default off.
+  bool watch_distance = false;
+  /// Each face of the original is handed on to the nearest one when it goes or moves, and no face comes to
+  /// look farther than this from where one looked that was handed to it. Radians, in (0, π). Default none.
+  std::optional<double> max_original_normal_deviation;
+  /// Of faces that are made: the longest side over the height upon it, as a multiple of that of an
+  /// equilateral triangle; at least 1. Default none.
+  std::optional<double> max_aspect_ratio;
+  /// No edge that is made is longer, in units of the positions. Default none.
+  std::optional<double> max_edge_length;
+  /// No vertex gets more edges; at least 3. Default none.
+  std::optional<std::size_t> max_valence;
+};
+
 struct DecimateOptions {
   /// Default edge collapse.
   DecimateOperation operation = DecimateOperation::kEdgeCollapse;
@@ -79,6 +114,7 @@ struct DecimateOptions {
   double max_normal_deviation = 1.308996938995747;
   /// Default in shape.
   DecimateBoundary boundary = DecimateBoundary::kInShape;
+  DecimateCriteria criteria;
   /// Weight of the constraint planes that stand on boundary edges, perpendicular to their face, relative to a
   /// plane of the same area; for a boundary kept in shape. Default 10.
   double boundary_weight = 10.0;
@@ -164,6 +200,9 @@ struct BasicDecimated {
   /// The largest attribute error of a collapse that was done: the root of the area-weighted mean of the
   /// squared changes of the attributes, as shares of their ranges, times their weights.
   double attribute_error = 0;
+  /// At most this is the Hausdorff distance between the input, without what was pruned, and the result, in
+  /// units of the positions; if DecimateCriteria watches it.
+  std::optional<double> distance_bound;
   std::size_t collapses = 0;
   /// What prune_size took away.
   std::size_t pruned_components = 0, pruned_faces = 0;
@@ -173,6 +212,12 @@ struct BasicDecimated {
   std::size_t rejected_error = 0;      ///< Its error is too large.
   std::size_t rejected_locked = 0;     ///< Both ends are locked.
   std::size_t rejected_seam = 0;       ///< It would close, part or join seams.
+  std::size_t rejected_criterion = 0;  ///< A bound of DecimateCriteria forbids it.
+  /// Where no target was reached and no time limit: what holds the edges (of vertex removal, the vertices)
+  /// that are left.
+  struct Held {
+    std::size_t link = 0, fold_over = 0, error = 0, locked = 0, boundary = 0, seam = 0, criterion = 0;
+  } held;
 };
 
 using Decimated = BasicDecimated<Vec3>;
