@@ -290,7 +290,7 @@ TEST_CASE("simplify says in words why it stopped") {
   const std::string sphere = scratch.file("sphere.off", off_of(icosphere(3)));
   const Outcome bound = vkmesh_run({"simplify", sphere, out, "--error", "1e-9"});
   CHECK(bound.code == 0);
-  CHECK_THAT(bound.out, Contains("would exceed the error of 1e-09"));
+  CHECK_THAT(bound.out, Contains("the error of 1e-09 holds what is left: 1,920 (the error is too large)"));
   const auto object = vkmesh_run({"simplify", sphere, out, "--error", "0.01", "--json"}).json();
   CHECK(object.at("result").at("stop") == "error bound");
   CHECK(object.at("result").at("error") <= 0.01);
@@ -299,7 +299,41 @@ TEST_CASE("simplify says in words why it stopped") {
   const Outcome stuck =
       vkmesh_run({"simplify", scratch.file("t.off", kTetrahedronOff), out, "--ratio", "0.5"});
   CHECK(stuck.code == 0);
-  CHECK_THAT(stuck.out, Contains("no collapse is left"));
+  CHECK_THAT(stuck.out, Contains("what is left is illegal: 6 (the manifold would break)"));
+}
+
+TEST_CASE("simplify takes criteria, and tells how far both surfaces are apart") {
+  const Scratch scratch;
+  const std::string out = scratch.path("out.ply");
+  const std::string sphere = scratch.file("sphere.off", off_of(icosphere(4)));
+  const auto object =
+      vkmesh_run({"simplify", sphere, out, "--ratio", "0.01", "--max-distance", "0.01", "--json"}).json();
+  const auto& result = object.at("result");
+  CHECK(result.at("distance_bound") <= 0.01);
+  CHECK(result.at("distance_bound") > 0.005);
+  CHECK(result.at("held").at("criterion") > 0);
+  CHECK(result.at("rejected_criterion") > 0);
+  const auto compared = vkmesh_run({"compare", sphere, out, "--json"}).json();
+  CHECK(compared.at("result").at("two_sided").at("hausdorff_low") <= result.at("distance_bound"));
+  const Outcome told = vkmesh_run({"simplify", sphere, out, "--ratio", "0.1", "--watch-distance"});
+  CHECK_THAT(told.out, Contains("no point of either surface is farther than"));
+  CHECK(vkmesh_run({"simplify", sphere, out, "--ratio", "0.1", "--json"})
+            .json()
+            .at("result")
+            .at("distance_bound")
+            .is_null());
+  const auto faces_by = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"simplify", sphere, out, "--ratio", "0.01", "--json"});
+    return vkmesh_run(more).json().at("output").at("faces").get<int>();
+  };
+  const int all = faces_by({});
+  CHECK(faces_by({"--max-original-normal-deviation", "15"}) > all);
+  CHECK(faces_by({"--max-edge-length", "0.2"}) > all);
+  CHECK(faces_by({"--max-aspect-ratio", "1.5"}) > all);
+  CHECK(faces_by({"--max-valence", "5"}) > all);
+  CHECK(faces_by({"--max-relative-distance", "0.001"}) > all);
+  CHECK(faces_by({"--criterion", "density=1", "--criterion", "quadric=0", "--criterion", "aspect-ratio"}) ==
+        all);
 }
 
 TEST_CASE("simplify keeps point attributes with their points, and names what it drops") {

@@ -126,6 +126,13 @@ TEST_CASE("A wrong command line is refused with exit code 2 and a sentence") {
       {{"simplify", in, out, "--ratio", "0.5", "--prune-size", "-1"}, "--prune-size"},
       {{"simplify", in, out, "--ratio", "0.5", "--operation", "vertex-removal", "--placement", "midpoint"},
        "--placement"},
+      {{"simplify", in, out, "--ratio", "0.5", "--criterion", "beauty"}, "beauty"},
+      {{"simplify", in, out, "--ratio", "0.5", "--criterion", "density=-1"}, "density=-1"},
+      {{"simplify", in, out, "--ratio", "0.5", "--criterion", "density=1x"}, "density=1x"},
+      {{"simplify", in, out, "--ratio", "0.5", "--criterion", "quadric=0"}, "criterion"},
+      {{"simplify", in, out, "--ratio", "0.5", "--max-valence", "2"}, "max_valence"},
+      {{"simplify", in, out, "--ratio", "0.5", "--max-aspect-ratio", "0.5"}, "--max-aspect-ratio"},
+      {{"simplify", in, out, "--ratio", "0.5", "--max-distance", "-1"}, "--max-distance"},
       {{"convert", in, "-", "--json"}, "--json"},
   };
   for (const Case& one : cases) {

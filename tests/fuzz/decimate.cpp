@@ -20,6 +20,7 @@
 #include <vkmesh/consolidate.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/decimation/decimate_index_buffer.h>
+#include <vkmesh/surface_distance.h>
 #include <vkmesh/topology.h>
 
 #include "check.h"
@@ -100,6 +101,23 @@ void add_attributes(Bytes& bytes, Input<Point>& input, DecimateOptions& options)
   }
 }
 
+void add_criteria(Bytes& bytes, DecimateCriteria& criteria) {
+  const std::uint8_t which = bytes.next();
+  if (which % 4 != 1) return;
+  const double size = std::ldexp(1.0, bytes.next() % 16 - 12);
+  if ((which & 4) != 0) criteria.max_relative_distance = size;
+  if ((which & 8) != 0) criteria.max_original_normal_deviation = std::min(0.1 + size, 3.0);
+  if ((which & 16) != 0) criteria.max_aspect_ratio = 1 + size;
+  if ((which & 32) != 0) criteria.max_edge_length = size;
+  if ((which & 64) != 0) criteria.max_valence = 3 + bytes.next() % 8;
+  criteria.watch_distance = (which & 128) != 0;
+  const std::uint8_t weights = bytes.next();
+  if ((weights & 1) != 0) criteria.density_weight = size;
+  if ((weights & 2) != 0) criteria.aspect_weight = size;
+  if ((weights & 4) != 0) criteria.normal_weight = size;
+  if ((weights & 15) == 9) criteria.quadric_weight = 0;
+}
+
 template <class Point>
 DecimateOptions options_of(Bytes& bytes, Input<Point>& input) {
   DecimateOptions options;
@@ -124,6 +142,7 @@ DecimateOptions options_of(Bytes& bytes, Input<Point>& input) {
   options.locked_edges = some_of(bytes, input.corners.size());
   options.locked_faces = some_of(bytes, input.corners.size() / 3);
   add_attributes(bytes, input, options);
+  add_criteria(bytes, options.criteria);
   return options;
 }
 
@@ -357,6 +376,34 @@ void require_no_flips(const BasicDecimated<Point>& result, const Input<Point>& i
           "no face is flipped");
 }
 
+/// What is told of the distance between both surfaces, and of what holds the rest.
+template <class Point>
+void require_criteria(const BasicDecimated<Point>& result, const Input<Point>& input,
+                      const DecimateOptions& options) {
+  const DecimateCriteria& criteria = options.criteria;
+  require(result.distance_bound.has_value() == (criteria.watch_distance || criteria.max_relative_distance),
+          "the distance is told when it is watched");
+  const auto& h = result.held;
+  const std::size_t held = h.link + h.fold_over + h.error + h.locked + h.boundary + h.seam + h.criterion;
+  if (result.stop == DecimateStop::kTargetReached)
+    require(held == 0, "nothing holds what could go on");
+  else if (result.stop != DecimateStop::kTimeLimit)
+    require(held == (options.operation == DecimateOperation::kVertexRemoval ? result.mesh.vertex_count()
+                                                                            : result.mesh.edge_count()),
+            "something holds all that is left");
+  if constexpr (std::is_same_v<Point, Vec3>) {
+    if (!result.distance_bound || options.prune_relative_size || result.mesh.face_count() > 500) return;
+    const auto distance = surface_distance({input.points, input.corners},
+                                           {result.positions, result.mesh.origins()}, {300, 1, 0});
+    if (!distance) return;  // no area
+    require(distance->two_sided().maximum <= *result.distance_bound + 1e-6 * distance->diagonal,
+            "no sample is farther than the bound");
+    if (criteria.max_relative_distance)
+      require(*result.distance_bound <= *criteria.max_relative_distance * distance->diagonal * (1 + 1e-6),
+              "the bound holds");
+  }
+}
+
 template <class Point>
 void require_sound(const BasicDecimated<Point>& result, const Input<Point>& input,
                    const DecimateOptions& options) {
@@ -370,6 +417,7 @@ void require_sound(const BasicDecimated<Point>& result, const Input<Point>& inpu
   require_stop(result, input, options);
   require_no_flips(result, input);
   require_attributes(result, input, options);
+  require_criteria(result, input, options);
 }
 
 template <class Point>

@@ -9,8 +9,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "parallel.h"
-
 namespace vkmesh::detail {
 namespace {
 
@@ -70,6 +68,7 @@ Criteria::Criteria(const DecimateCriteria& criteria, const Frame& frame, const C
     chord_ = 2 * std::sin(0.5 * *criteria.max_original_normal_deviation);
     normals_.resize(mesh.face_count());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+      if (!mesh.face(4 * f).alive()) continue;  // pruned
       const DVec3 n = unit_normal(face_of(mesh, f).corner);
       if (n != DVec3(0.0))
         normals_[f] = {{static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)}, 1e-6f};

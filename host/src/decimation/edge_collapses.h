@@ -131,14 +131,12 @@ class EdgeCollapses {
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
         if (!mesh_.alive(h) || !mesh_.parked(h) || (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
           continue;
-        evaluate(std::span(&h, 1));
-        due_[0] = due_of(0, h);
-        walk_rings(1);
-        Rings rings;
-        const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
-        const Legality why = judge(0, p, q, rings);
+        // Rounding differs from one half of the edge to the other, and it was one of them that was refused.
+        Legality why = judge_alone(h);
+        if (why == Legality::kLegal) why = judge_alone(mesh_.twin(h));
         ++state_.outcome.held[static_cast<std::size_t>(why)];
-        if (why == Legality::kLocked && state_.boundary_kept && mesh_.on_boundary(p) && mesh_.on_boundary(q))
+        if (why == Legality::kLocked && state_.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
+            mesh_.on_boundary(mesh_.target(h)))
           ++state_.outcome.held_by_boundary;
       }
   }
@@ -192,29 +190,28 @@ class EdgeCollapses {
   /// The faces at both ends of an edge that a collapse to this place changes.
   void take_star(Star& star, std::uint32_t h, const std::array<float, 3>& place) const {
     star.clear();
-    const std::uint32_t t = mesh_.twin(h), p = mesh_.origin(h), q = mesh_.origin(t);
-    const DVec3 there = point_of(place), at_p = point_of(vertices_[p].position),
-                at_q = point_of(vertices_[q].position);
+    const std::uint32_t t = mesh_.twin(h);
+    const DVec3 there = point_of(place), at_p = point_of(vertices_[mesh_.origin(h)].position),
+                at_q = point_of(vertices_[mesh_.origin(t)].position);
     star.length2 = glm::dot(at_q - at_p, at_q - at_p);
     star.inner_after.push_back(there);
-    for (const std::uint32_t start : {h, t}) {
-      const DVec3& here = start == h ? at_p : at_q;
-      const bool moves = there != here;
-      if (moves) star.inner_before.push_back(here);
-      std::uint32_t out = start;
-      do {
-        const std::uint32_t f = out >> 2;
-        const bool goes = f == (h >> 2) || f == (t >> 2);
-        if (!mesh_.is_ghost(out) && (goes ? start == h : moves)) {
-          star.before.push_back(face_of(mesh_, f));
-          if (!goes) {
-            star.after.push_back(star.before.back());
-            star.after.back().corner[out & 3u] = there;
-          }
-        }
-        out = mesh_.around_vertex(out);
-      } while (out != start);
-    }
+    if (there != at_p) star.inner_before.push_back(at_p);
+    if (there != at_q) star.inner_before.push_back(at_q);
+    for (const std::uint32_t side : {h, t})
+      if (!mesh_.is_ghost(side)) star.before.push_back(face_of(mesh_, side >> 2));
+    const auto add_others_at = [&](std::uint32_t start) {
+      for (std::uint32_t out = mesh_.around_vertex(start); out != start; out = mesh_.around_vertex(out)) {
+        if (mesh_.is_ghost(out) || (out >> 2) == (h >> 2) || (out >> 2) == (t >> 2)) continue;
+        star.before.push_back(face_of(mesh_, out >> 2));
+        star.after.push_back(star.before.back());
+        star.after.back().corner[out & 3u] = there;
+      }
+    };
+    if (there != at_p) add_others_at(h);
+    if (there != at_q) add_others_at(t);
+    // Where nothing moves, or an ear of the boundary goes, the faces beside it are in its place.
+    if (star.after.empty())
+      for (const std::uint32_t start : {h, t}) add_others_at(start);
   }
 
   // What follows happens to all edges of the batch before the next thing does: what one waits for from
@@ -329,6 +326,14 @@ class EdgeCollapses {
       vertices_[p].source |= CollapseVertex::kHasParked;
       vertices_[q].source |= CollapseVertex::kHasParked;
     }
+  }
+
+  [[nodiscard]] Legality judge_alone(std::uint32_t h) {
+    evaluate(std::span(&h, 1));
+    due_[0] = due_of(0, h);
+    walk_rings(1);
+    Rings rings;
+    return judge(0, mesh_.origin(h), mesh_.target(h), rings);
   }
 
   /// Sets `rings` when it comes to that.

@@ -375,6 +375,12 @@ class VertexRemovals {
         face.corner[i] = point_of(vertices_[star.target[corners[i]]].position);
       faces_.after.push_back(face);
     }
+    // An ear of the boundary leaves nothing in its place but the face beside it.
+    if (faces_.after.empty()) {
+      const Star::Face beside = face_of(mesh_, beyond(star, 0) >> 2);
+      faces_.before.push_back(beside);
+      faces_.after.push_back(beside);
+    }
   }
 
   /// Fills the hole again, without the edges that the mesh has already.
@@ -511,13 +517,29 @@ class VertexRemovals {
     state_.faces -= star.closed ? 2 : 1;
     --state_.vertices;
     ++state_.outcome.collapses;
-    for (const std::uint32_t r : std::span(star.target).first(star.neighbours())) {
-      CollapseVertex& vertex = vertices_[r];
-      if (vertex.has(CollapseVertex::kHasParked) || (Queue::kExact && !vertex.has(CollapseVertex::kLocked)))
-        queue_.insert_now(r);
-      vertex.source = (vertex.source & ~CollapseVertex::kHasParked) | CollapseVertex::kTouched;
+    const auto ring = std::span(star.target).first(star.neighbours());
+    for (const std::uint32_t r : ring) {
+      revive(r);
+      vertices_[r].source |= CollapseVertex::kTouched;
       touched_.push_back(r);
     }
+    if (state_.criteria == nullptr || !state_.criteria->bounds()) return;
+    // Bounds of valence look one vertex farther.
+    for (const std::uint32_t r : ring) {
+      std::uint32_t h = vertices_[r].leading;
+      do {
+        if (const std::uint32_t v = mesh_.target(h); v != mesh_.apex()) revive(v);
+        h = mesh_.around_vertex(h);
+      } while (h != vertices_[r].leading);
+    }
+  }
+
+  /// Puts a vertex in the queue again whose star has changed.
+  void revive(std::uint32_t v) {
+    CollapseVertex& vertex = vertices_[v];
+    if (vertex.has(CollapseVertex::kHasParked) || (Queue::kExact && !vertex.has(CollapseVertex::kLocked)))
+      queue_.insert_now(v);
+    vertex.source &= ~CollapseVertex::kHasParked;
   }
 
   /// The corners of the triangle that holds v, by v's place in it; on the boundary the ends of the new edge,
