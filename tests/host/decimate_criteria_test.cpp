@@ -231,47 +231,62 @@ TEST_CASE("decimation: weights make better triangles and truer normals", "[decim
     CHECK(Measures(run(mesh, by)).mean_aspect < (fills ? 0.97 : 0.93) * Measures(plain).mean_aspect);
     by = options;
     by.criteria.normal_weight = 1;
-    CHECK(between(mesh, run(mesh, by)).two_sided().mean_normal_angle <
-          1.03 * between(mesh, plain).two_sided().mean_normal_angle);
+    CHECK(between(mesh, run(mesh, by)).two_sided().maximum_normal_angle <
+          0.9 * between(mesh, plain).two_sided().maximum_normal_angle);
   }
 }
 
-/// The order of half-edge collapses by density, done over again: each edge costs what its ends stand for
-/// times its squared length, and the least goes.
+/// Collapses to the middle by density and aspect ratio, done over again: nothing that could be done costs
+/// less.
 TEST_CASE("decimation: the order by criteria is the greedy one", "[decimate]") {
-  IndexedFaceSet mesh = test::icosphere(3);
-  test::jitter(mesh, 0.003f, 21);
+  IndexedFaceSet mesh = test::icosphere(2);
+  test::jitter(mesh, 0.02f, 21);
   DecimateOptions options;
-  options.operation = DecimateOperation::kHalfEdgeCollapse;
+  options.placement = CollapsePlacement::kMidpoint;
   options.criteria.quadric_weight = 0;
-  options.criteria.density_weight = 1;
-  options.target_ratio = 0.7;
+  options.criteria.density_weight = 0.3;
+  options.criteria.aspect_weight = 1;
+  options.target_ratio = 0.5;
   options.max_normal_deviation = 3;
   options.keep_history = true;
   const Decimated result = run(mesh, options);
   REQUIRE(result.rejected_link + result.rejected_fold_over == 0);  // or more would have to be known here
-  REQUIRE(result.history.size() > 150);
+  REQUIRE(result.history.size() > 70);
 
-  std::vector<double> weight(mesh.points.size(), 0);
-  std::set<std::array<std::uint32_t, 3>> faces;
+  using Face = std::array<std::uint32_t, 3>;
+  std::vector<DVec3> places(mesh.points.begin(), mesh.points.end());
+  std::vector<double> weight(places.size(), 0);
+  std::set<Face> faces;
   for (std::size_t c = 0; c < mesh.corners.size(); c += 3) {
-    const std::array<std::uint32_t, 3> f = {mesh.corners[c], mesh.corners[c + 1], mesh.corners[c + 2]};
+    const Face f = {mesh.corners[c], mesh.corners[c + 1], mesh.corners[c + 2]};
     faces.insert(f);
-    const DVec3 p(mesh.points[f[0]]), q(mesh.points[f[1]]), r(mesh.points[f[2]]);
-    for (const std::uint32_t v : f) weight[v] += 0.5 * glm::length(glm::cross(q - p, r - p));
+    for (const std::uint32_t v : f)
+      weight[v] += 0.5 * glm::length(glm::cross(places[f[1]] - places[f[0]], places[f[2]] - places[f[0]]));
   }
   const auto cost = [&](std::uint32_t a, std::uint32_t b) {
-    const DVec3 way = DVec3(mesh.points[a]) - DVec3(mesh.points[b]);
-    return (weight[a] + weight[b]) * glm::dot(way, way);
+    const DVec3 way = places[a] - places[b], middle = 0.5 * (places[a] + places[b]);
+    double worst = 0;
+    for (const Face& f : faces) {
+      const auto holds = [&](std::uint32_t v) { return f[0] == v || f[1] == v || f[2] == v; };
+      if (holds(a) == holds(b)) continue;  // goes, or stays as it is
+      std::array<DVec3, 3> p;
+      for (std::size_t i = 0; i < 3; ++i) p[i] = f[i] == a || f[i] == b ? middle : places[f[i]];
+      double longest = 0;
+      for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, glm::distance(p[i], p[(i + 1) % 3]));
+      const double height = glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / longest;
+      worst = std::max(worst, std::sqrt(0.75) * longest / height);
+    }
+    return (weight[a] + weight[b]) * glm::dot(way, way) * (0.09 + 1 - 1 / worst);
   };
   for (const Collapse<Vec3>& step : result.history) {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& f : faces)
+    for (const Face& f : faces)
       for (std::size_t i = 0; i < 3; ++i) least = std::min(least, cost(f[i], f[(i + 1) % 3]));
-    CHECK(cost(step.kept, step.removed) <= least * (1 + 1e-5));
+    CHECK(cost(step.kept, step.removed) <= least * (1 + 1e-4));
     weight[step.kept] += weight[step.removed];
-    std::set<std::array<std::uint32_t, 3>> left;
-    for (auto f : faces) {
+    places[step.kept] = DVec3(step.position);
+    std::set<Face> left;
+    for (Face f : faces) {
       std::replace(f.begin(), f.end(), step.removed, step.kept);
       if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) left.insert(f);
     }
