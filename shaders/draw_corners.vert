@@ -11,6 +11,11 @@ layout(location = 4) out vec3 across;
 
 uint point_of(uint corner) { return VKMESH_GIVEN(p.corners) ? p.corners.at[corner] : corner; }
 
+// The element of a corner whose value colours it.
+uint element_of(uint point, uint corner) {
+  return p.element == VKMESH_PER_POINT ? point : p.element == VKMESH_PER_CORNER ? corner : corner / 3u;
+}
+
 void main() {
   uint corner = uint(gl_VertexIndex);
   uint face = corner / 3u, side = corner % 3u;
@@ -27,9 +32,9 @@ void main() {
     c /= max(max(abs(c.x), abs(c.y)), max(abs(c.z), 1e-37));
     normal = cross(b, c);
   }
-  uint element = element_of(point, corner);
-  direct = direct_color(element);
-  value = value_of(element);
+  uint bits = load_value(element_of(point, corner));
+  direct = as_color(bits);
+  value = as_number(bits);
   // Edge i runs from corner i to the next one, opposite corner i + 2: the share of that corner is zero along it.
   across = vec3(side == 0u, side == 1u, side == 2u);
   if (VKMESH_GIVEN(p.hidden)) {

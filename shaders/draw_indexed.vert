@@ -5,6 +5,7 @@
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 point_normal;
+layout(location = 2) in uint point_value;
 
 layout(location = 0) out vec3 at;
 layout(location = 1) centroid out vec3 normal;
@@ -15,9 +16,8 @@ layout(location = 4) out vec3 across;
 void main() {
   at = relative(position);
   normal = point_normal;
-  uint element = uint(gl_VertexIndex);
-  direct = direct_color(element);
-  value = value_of(element);
+  direct = as_color(point_value);
+  value = as_number(point_value);
   across = vec3(1.0);
   gl_Position = to_clip(at);
 }

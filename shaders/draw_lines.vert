@@ -7,7 +7,7 @@ void main() {
   uint edge = uint(gl_VertexIndex) / 6u, i = uint(gl_VertexIndex) % 6u;
   vec4 a = to_clip(relative(load3(p.positions, p.corners.at[2u * edge])));
   vec4 b = to_clip(relative(load3(p.positions, p.corners.at[2u * edge + 1u])));
-  vec2 half_size = vec2(p.view.half_width, p.view.half_height);
+  vec2 half_size = vec2(view.half_width, view.half_height);
   // Without a division, so that an end beside or behind the eye gives a direction as well; the offset below grows
   // with w, which keeps the bar's width wherever it is clipped.
   vec2 along = (b.xy * a.w - a.xy * b.w) * half_size;
@@ -21,5 +21,5 @@ void main() {
   vec2 offset = (side * left + along * (at_end ? 1.0 : -1.0)) * 0.5 * p.width;
   gl_Position = end;
   gl_Position.xy += offset / half_size * end.w;
-  gl_Position.z += p.view.line_bias;
+  gl_Position.z += view.line_bias;
 }

@@ -16,14 +16,14 @@ void main() {
   float covered = clamp(0.5 + (1.0 - outward) / max(fwidth(outward), 1e-12), 0.0, 1.0);
   if (covered <= 0.0) discard;
 
-  vec3 view = towards_eye(at);
+  vec3 to_eye = towards_eye(at);
   float size = dot(normal, normal);
   if (size > 0.0) {
     vec3 n = normal * inversesqrt(size);
-    color = vec4(shown(n, value, direct, dot(n, view) < 0.0 ? -n : n, view), covered);
+    color = vec4(shown(n, value, direct, dot(n, to_eye) < 0.0 ? -n : n, to_eye), covered);
   } else {
-    float depth = dot(at - p.view.eye.xyz, -p.view.back.xyz);
-    float behind = clamp((depth - p.view.nearest) / max(p.view.depth, 1e-30), 0.0, 1.0);
+    float depth = dot(at - view.eye.xyz, -view.back.xyz);
+    float behind = clamp((depth - view.nearest) / max(view.depth, 1e-30), 0.0, 1.0);
     color = vec4(to_srgb(surface_color(value, direct) * mix(1.0, 0.25, behind)), covered);
   }
 }

@@ -15,24 +15,24 @@ void main() {
   uint point = uint(gl_VertexIndex) / 3u;
   at = relative(load3(p.positions, point));
   normal = VKMESH_GIVEN(p.normals) ? load3(p.normals, point) : vec3(0.0);
-  uint element = element_of(point, point);
-  direct = direct_color(element);
-  value = value_of(element);
+  uint bits = load_value(point);
+  direct = as_color(bits);
+  value = as_number(bits);
   disc = kCorners[uint(gl_VertexIndex) % 3u];
 
   vec4 center = to_clip(at);
   if (VKMESH_GIVEN(p.spacing)) {
-    float radius = p.spacing.at[point] * p.view.splat_scale;
+    float radius = p.spacing.at[point] * view.splat_scale;
     vec3 axis = has(VKMESH_ORIENTED) && dot(normal, normal) > 0.0 ? normalize(normal) : towards_eye(at);
     vec3 tangent = normalize(cross(axis, abs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
     vec3 other = cross(axis, tangent);
     // No disc gets smaller than a point would be.
-    vec3 row = vec3(p.view.clip_from_origin[0].y, p.view.clip_from_origin[1].y, p.view.clip_from_origin[2].y);
-    float pixels = p.view.half_height * length(row) * radius / max(center.w, 1e-30);
+    vec3 row = vec3(view.clip_from_origin[0].y, view.clip_from_origin[1].y, view.clip_from_origin[2].y);
+    float pixels = view.half_height * length(row) * radius / max(center.w, 1e-30);
     radius *= max(1.0, 0.5 / max(pixels, 1e-6));
     gl_Position = to_clip(at + radius * (disc.x * tangent + disc.y * other));
   } else {
     gl_Position = center;
-    gl_Position.xy += disc * p.view.point_radius / vec2(p.view.half_width, p.view.half_height) * center.w;
+    gl_Position.xy += disc * view.point_radius / vec2(view.half_width, view.half_height) * center.w;
   }
 }

@@ -75,7 +75,8 @@ Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemor
     info.size = std::max<std::uint64_t>((bytes + 7) / 8 * 8, 8);  // Kernels load eight bytes at once.
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
     const std::string what = "making buffer '" + name + "'";
     VKMESH_VK(vk.vkCreateBuffer(device.handle, &info, nullptr, &buffer.buffer_), what);

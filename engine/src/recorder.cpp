@@ -21,7 +21,8 @@ constexpr VkAccessFlags kReads = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_
 constexpr VkPipelineStageFlags kDrawStages = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT |
                                              VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
                                              VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
-constexpr VkAccessFlags kDrawReads = VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT;
+constexpr VkAccessFlags kDrawReads =
+    VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_UNIFORM_READ_BIT;
 
 bool holds(const std::vector<VkBuffer>& buffers, const Buffer* buffer) {
   return std::find(buffers.begin(), buffers.end(), buffer->vk_buffer()) != buffers.end();

@@ -31,11 +31,13 @@ namespace vkmesh::detail {
 // Of volk's table, what a device must have.
 #define VKMESH_DEVICE_FUNCTIONS(X)  \
   X(vkAllocateCommandBuffers)       \
+  X(vkAllocateDescriptorSets)       \
   X(vkAllocateMemory)               \
   X(vkBeginCommandBuffer)           \
   X(vkBindBufferMemory)             \
   X(vkBindImageMemory)              \
   X(vkCmdBeginRenderPass)           \
+  X(vkCmdBindDescriptorSets)        \
   X(vkCmdBindIndexBuffer)           \
   X(vkCmdBindPipeline)              \
   X(vkCmdBindVertexBuffers)         \
@@ -55,6 +57,8 @@ namespace vkmesh::detail {
   X(vkCreateBuffer)                 \
   X(vkCreateCommandPool)            \
   X(vkCreateComputePipelines)       \
+  X(vkCreateDescriptorPool)         \
+  X(vkCreateDescriptorSetLayout)    \
   X(vkCreateFence)                  \
   X(vkCreateFramebuffer)            \
   X(vkCreateGraphicsPipelines)      \
@@ -66,6 +70,8 @@ namespace vkmesh::detail {
   X(vkCreateShaderModule)           \
   X(vkDestroyBuffer)                \
   X(vkDestroyCommandPool)           \
+  X(vkDestroyDescriptorPool)        \
+  X(vkDestroyDescriptorSetLayout)   \
   X(vkDestroyDevice)                \
   X(vkDestroyFence)                 \
   X(vkDestroyFramebuffer)           \

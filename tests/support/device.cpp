@@ -124,13 +124,17 @@ std::string device_name() {
   return name != nullptr && *name != '\0' ? name : "llvmpipe";
 }
 
+bool gpu_assisted() {
+  const char* asked = std::getenv("VKMESH_GPU_ASSISTED");
+  return asked != nullptr && std::string(asked) == "1";
+}
+
 ContextOptions device_options() {
   watch().device_used = true;
   ContextOptions options;
   options.device = device_name();
   options.validation = true;
-  const char* gpu_assisted = std::getenv("VKMESH_GPU_ASSISTED");
-  options.gpu_assisted_validation = gpu_assisted != nullptr && std::string(gpu_assisted) == "1";
+  options.gpu_assisted_validation = gpu_assisted();
   options.on_validation_message = [](const std::string& message) {
     const std::lock_guard lock(watch().mutex);
     watch().messages.push_back(message);

@@ -11,9 +11,11 @@ namespace vkmesh::test {
 /// VKMESH_TEST_DEVICE, by default "llvmpipe".
 std::string device_name();
 
-/// Options that open the test device with validation and synchronization validation; where
-/// VKMESH_GPU_ASSISTED is 1, with GPU-assisted validation as well. On llvmpipe tests tagged [draw] and
-/// [long-loops] must then be left out (docs/design.md).
+/// Whether VKMESH_GPU_ASSISTED is 1. Some tests then take smaller shapes: docs/design.md says why.
+bool gpu_assisted();
+
+/// Options that open the test device with validation and synchronization validation, and GPU-assisted
+/// validation where gpu_assisted() says so.
 ContextOptions device_options();
 
 /// One context for the whole run. Fails the test where there is no such device.

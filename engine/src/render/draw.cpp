@@ -87,7 +87,6 @@ Result<void> put_camera(kernels::DrawView& view, const Camera& camera, std::uint
   }
   put(view.origin, origin);
   put(view.eye, eye);
-  put(view.right, axes.right);
   put(view.up, axes.up);
   put(view.back, -axes.forward);
   const DVec3 lamp = -axes.forward + 0.45 * axes.up - 0.35 * axes.right;
@@ -98,11 +97,10 @@ Result<void> put_camera(kernels::DrawView& view, const Camera& camera, std::uint
   view.half_width = 0.5f * static_cast<float>(width);
   view.half_height = 0.5f * static_cast<float>(height);
   view.line_bias = static_cast<float>(kLineBias * (perspective ? at_eye : 4.0));
-  view.perspective = perspective ? 1 : 0;
   return {};
 }
 
-void put_style(kernels::DrawView& view, const DrawGeometry& geometry, const DrawStyle& style) {
+void put_style(kernels::DrawView& view, const DrawStyle& style) {
   put_linear(view.plain, style.plain);
   put_linear(view.none, style.none);
   put_linear(view.flipped, style.flipped);
@@ -111,12 +109,6 @@ void put_style(kernels::DrawView& view, const DrawGeometry& geometry, const Draw
   view.value_low = static_cast<float>(style.range.low);
   const double width = style.range.high - style.range.low;
   view.value_scale = width > 0.0 ? static_cast<float>(1.0 / width) : 0.0f;
-  view.element = geometry.element == DrawElement::kPoint    ? VKMESH_PER_POINT
-                 : geometry.element == DrawElement::kCorner ? VKMESH_PER_CORNER
-                                                            : VKMESH_PER_FACE;
-  view.flags = 0;
-  if (style.mode != DrawMode::kFlat) view.flags |= VKMESH_SMOOTH;
-  if (style.mode == DrawMode::kSplats) view.flags |= VKMESH_ORIENTED;
   view.point_radius = 0.5f * style.point_size;
   view.splat_scale = style.splat_scale;
   const ColorTable table = color_table(style.map);
@@ -177,17 +169,23 @@ Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const
     VKMESH_TRY(detail::DrawPipelines * pipelines, device.draw_pipelines());
     kernels::DrawView view{};
     VKMESH_CHECK(put_camera(view, camera, to.width, to.height));
-    put_style(view, geometry, style);
+    put_style(view, style);
     VKMESH_CHECK(recorder.update(to.view, std::as_bytes(std::span(&view, 1))));
 
     kernels::DrawParams params{};
-    params.view = to.view.address();
     params.positions = address_of(geometry.positions);
     params.corners = address_of(geometry.corners);
     params.normals = address_of(geometry.normals);
     params.values = address_of(geometry.values);
     params.hidden = address_of(geometry.hidden_edges);
     params.spacing = style.mode == DrawMode::kSplats ? address_of(geometry.spacing) : 0;
+    params.element = geometry.element == DrawElement::kPoint    ? VKMESH_PER_POINT
+                     : geometry.element == DrawElement::kCorner ? VKMESH_PER_CORNER
+                                                                : VKMESH_PER_FACE;
+    params.flags = 0;
+    if (style.mode != DrawMode::kFlat) params.flags |= VKMESH_SMOOTH;
+    if (style.mode == DrawMode::kSplats) params.flags |= VKMESH_ORIENTED;
+    if (camera.projection == Projection::kPerspective) params.flags |= VKMESH_PERSPECTIVE;
 
     const bool as_points = style.mode == DrawMode::kPoints || style.mode == DrawMode::kSplats;
     const bool by_points = style.mode == DrawMode::kShaded && geometry.corners != nullptr &&
@@ -238,6 +236,8 @@ Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const
                                 0.0f, 1.0f};
       vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
       vk.vkCmdSetScissor(cmd, 0, 1, &begin.renderArea);
+      vk.vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines->layout(), 0, 1, &to.set, 0,
+                                 nullptr);
 
       const auto use = [&](VkPipeline pipeline) {
         vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
@@ -249,9 +249,12 @@ Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const
       if (as_points && geometry.points > 0) {
         vk.vkCmdDraw(cmd, 3 * geometry.points, 1, 0, 0);
       } else if (by_points && geometry.triangles > 0) {
-        const VkBuffer buffers[] = {geometry.positions->vk_buffer(), geometry.normals->vk_buffer()};
-        const VkDeviceSize offsets[] = {0, 0};
-        vk.vkCmdBindVertexBuffers(cmd, 0, 2, buffers, offsets);
+        // Positions stand in for values that are not there, and are not read as such.
+        const Buffer* values = geometry.values != nullptr ? geometry.values : geometry.positions;
+        const VkBuffer buffers[] = {geometry.positions->vk_buffer(), geometry.normals->vk_buffer(),
+                                    values->vk_buffer()};
+        const VkDeviceSize offsets[] = {0, 0, 0};
+        vk.vkCmdBindVertexBuffers(cmd, 0, 3, buffers, offsets);
         vk.vkCmdBindIndexBuffer(cmd, geometry.corners->vk_buffer(), 0, VK_INDEX_TYPE_UINT32);
         vk.vkCmdDrawIndexed(cmd, 3 * geometry.triangles, 1, 0, 0, 0);
       } else if (!as_points && geometry.triangles > 0) {

@@ -81,6 +81,7 @@ DrawPipelines::~DrawPipelines() {
   const auto& vk = device_.functions;
   for (const auto& [key, pipeline] : pipelines_) vk.vkDestroyPipeline(device_.handle, pipeline, nullptr);
   vk.vkDestroyPipelineLayout(device_.handle, layout_, nullptr);
+  vk.vkDestroyDescriptorSetLayout(device_.handle, set_layout_, nullptr);
   vk.vkDestroyRenderPass(device_.handle, render_pass_, nullptr);
 }
 
@@ -159,10 +160,17 @@ Result<void> DrawPipelines::make_render_pass() {
 }
 
 Result<void> DrawPipelines::make_layout() {
-  const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                                  sizeof(kernels::DrawParams)};
+  constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+  const VkDescriptorSetLayoutBinding view{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, kStages, nullptr};
+  const VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr, 0,
+                                            1, &view};
+  VKMESH_VK(device_.functions.vkCreateDescriptorSetLayout(device_.handle, &set, nullptr, &set_layout_),
+            "making the layout of drawing");
+  const VkPushConstantRange range{kStages, 0, sizeof(kernels::DrawParams)};
   VkPipelineLayoutCreateInfo layout{};
   layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = &set_layout_;
   layout.pushConstantRangeCount = 1;
   layout.pPushConstantRanges = &range;
   VKMESH_VK(device_.functions.vkCreatePipelineLayout(device_.handle, &layout, nullptr, &layout_),
@@ -180,9 +188,11 @@ Result<VkPipeline> DrawPipelines::pipeline(const DrawPipelineKey& key) {
 
 Result<void> DrawPipelines::make_pipeline(const DrawPipelineKey& key, VkPipeline& pipeline) const {
   const VkVertexInputBindingDescription bindings[] = {{0, 12, VK_VERTEX_INPUT_RATE_VERTEX},
-                                                      {1, 12, VK_VERTEX_INPUT_RATE_VERTEX}};
+                                                      {1, 12, VK_VERTEX_INPUT_RATE_VERTEX},
+                                                      {2, 4, VK_VERTEX_INPUT_RATE_VERTEX}};
   const VkVertexInputAttributeDescription attributes[] = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
-                                                          {1, 1, VK_FORMAT_R32G32B32_SFLOAT, 0}};
+                                                          {1, 1, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                                                          {2, 2, VK_FORMAT_R32_UINT, 0}};
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -233,9 +243,9 @@ Result<void> DrawPipelines::make_pipeline(const DrawPipelineKey& key, VkPipeline
   VkPipelineVertexInputStateCreateInfo input{};
   input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
   if (key.shaders == DrawShaders::kIndexed) {
-    input.vertexBindingDescriptionCount = 2;
+    input.vertexBindingDescriptionCount = 3;
     input.pVertexBindingDescriptions = bindings;
-    input.vertexAttributeDescriptionCount = 2;
+    input.vertexAttributeDescriptionCount = 3;
     input.pVertexAttributeDescriptions = attributes;
   }
   VkPipelineMultisampleStateCreateInfo samples{};

@@ -47,6 +47,8 @@ class DrawPipelines {
   /// Attachments: colour and depth of kSamples, and the resolved colour, which it leaves ready to copy from.
   [[nodiscard]] VkRenderPass render_pass() const { return render_pass_; }
   [[nodiscard]] VkFormat depth_format() const { return depth_format_; }
+  /// Of set 0: a kernels::DrawView.
+  [[nodiscard]] VkDescriptorSetLayout set_layout() const { return set_layout_; }
   /// Push constants are a kernels::DrawParams for the vertex and fragment stages.
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
   /// Made at the first call; may be called from several threads. Errors: kOutOfMemory, kNoDevice.
@@ -61,6 +63,7 @@ class DrawPipelines {
   Device& device_;
   VkFormat depth_format_ = VK_FORMAT_UNDEFINED;
   VkRenderPass render_pass_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   std::mutex mutex_;
   std::map<DrawPipelineKey, VkPipeline> pipelines_;

@@ -13,8 +13,32 @@ namespace vkmesh {
 
 RenderTarget::State::~State() {
   const detail::Device& device = context.device();
-  if (framebuffer != VK_NULL_HANDLE && !device.abandoned.load())
-    device.functions.vkDestroyFramebuffer(device.handle, framebuffer, nullptr);
+  if (device.abandoned.load()) return;
+  device.functions.vkDestroyFramebuffer(device.handle, framebuffer, nullptr);
+  device.functions.vkDestroyDescriptorPool(device.handle, pool, nullptr);
+}
+
+Result<void> RenderTarget::State::make_view(VkDescriptorSetLayout layout) {
+  const detail::Device& device = context.device();
+  const auto& vk = device.functions;
+  const std::string name = "parameters of the picture", what = "describing the " + name;
+  VKMESH_TRY(view, Buffer::create(context, sizeof(kernels::DrawView), BufferMemory::kDevice, name));
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1};
+  const VkDescriptorPoolCreateInfo info{
+      VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 1, &size};
+  VKMESH_VK(vk.vkCreateDescriptorPool(device.handle, &info, nullptr, &pool), what);
+  const VkDescriptorSetAllocateInfo allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool,
+                                               1, &layout};
+  VKMESH_VK(vk.vkAllocateDescriptorSets(device.handle, &allocation, &set), what);
+  const VkDescriptorBufferInfo buffer{view.vk_buffer(), 0, VK_WHOLE_SIZE};
+  VkWriteDescriptorSet write{};
+  write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+  write.dstSet = set;
+  write.descriptorCount = 1;
+  write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  write.pBufferInfo = &buffer;
+  vk.vkUpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
+  return {};
 }
 
 RenderTarget::RenderTarget(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -67,8 +91,7 @@ Result<RenderTarget> RenderTarget::create(Context& context, std::uint32_t width,
     info.layers = 1;
     VKMESH_VK(device.functions.vkCreateFramebuffer(device.handle, &info, nullptr, &state->framebuffer),
               "making a frame buffer");
-    VKMESH_TRY(state->view, Buffer::create(context, sizeof(kernels::DrawView), BufferMemory::kDevice,
-                                           "parameters of the picture"));
+    VKMESH_CHECK(state->make_view(pipelines->set_layout()));
     VKMESH_TRY(state->pixels,
                Buffer::create(context, std::uint64_t{4} * width * height, BufferMemory::kReadback, "pixels"));
     return RenderTarget(std::move(state));
