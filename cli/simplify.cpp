@@ -236,6 +236,10 @@ void add_simplify(CLI::App& app, Program& program) {
       "vertex-removal\n"
       "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz one.ply --ratio 0.1 --prune-relative-size 0.01\n"
       "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz true.ply --ratio 0.2 --max-relative-distance "
+      "1e-3\n"
+      "  vkmesh simplify data/cgal/meshes/elephant.off even.ply --ratio 0.2 --criterion aspect-ratio=0.1 "
+      "--max-valence 8\n"
       "  vkmesh simplify data/cgal/meshes/mesh_with_colors.off painted.ply --faces 3 --attribute color=0.05\n"
       "  vkmesh simplify data/dragon/dragon_vrip_res3.ply.gz level.ply --ratio 0.5 --operation "
       "half-edge-collapse --index-only");

@@ -1,4 +1,4 @@
-// Decimation by collapsing edges, cheapest first, by quadric error.
+// Decimation: collapses and removals, cheapest first, by quadric error and other criteria.
 #pragma once
 
 #include <array>
@@ -232,8 +232,9 @@ using Decimated = BasicDecimated<Vec3>;
 ///
 /// Order: with optimal placement the error of an edge only rises, so edges lie in a MonotoneQueue under lower
 /// bounds of their errors, and a collapse is among the cheapest to 1/16 octave. Half-edge collapses go the
-/// same way. Midpoints may fall in error: their edges lie in an AddressableHeap, and the cheapest goes first.
-/// Ties fall to the order of the input, so the same input gives the same bytes everywhere.
+/// same way. Midpoints may fall in error, and so may costs with other weights than that of the quadrics:
+/// these lie in an AddressableHeap, and the cheapest goes first. Ties fall to the order of the input, so the
+/// same input gives the same bytes everywhere.
 ///
 /// Legal is a collapse that
 /// - keeps the graph simple and the surface a manifold of the same topology: the link condition, H. Hoppe et
