@@ -47,7 +47,7 @@ struct alignas(64) CollapseVertex {
   [[nodiscard]] bool alive() const { return (leading & kGone) == 0; }
 
   /// Moves the point about which the quadric is expressed.
-  void shift(const std::array<float, 3>& d) {
+  [[gnu::always_inline]] void shift(const std::array<float, 3>& d) {
     const std::array<float, 3> ad = {a[0] * d[0] + a[1] * d[1] + a[2] * d[2],
                                      a[1] * d[0] + a[3] * d[1] + a[4] * d[2],
                                      a[2] * d[0] + a[4] * d[1] + a[5] * d[2]};

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "decimation/collapse_mesh.h"
+#include "decimation/four_rows.h"
 
 namespace vkmesh::detail {
 
@@ -42,30 +42,13 @@ struct EdgeBatch {
   }
 
  private:
-#if defined(__GNUC__) || defined(__clang__)
-  using Four = float __attribute__((vector_size(16)));
   static void turn(const std::array<const CollapseVertex*, 4>& from, Words& to, std::size_t lane) {
     for (std::size_t g = 0; g < 16; g += 4) {
-      std::array<Four, 4> r;
-      for (std::size_t i = 0; i < 4; ++i)
-        __builtin_memcpy(&r[i], reinterpret_cast<const char*>(from[i]) + 4 * g, 16);
-      const Four a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
-                 b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
-      const Four c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
-                 d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
-      const std::array<Four, 4> s = {
-          __builtin_shufflevector(a, b, 0, 1, 4, 5), __builtin_shufflevector(a, b, 2, 3, 6, 7),
-          __builtin_shufflevector(c, d, 0, 1, 4, 5), __builtin_shufflevector(c, d, 2, 3, 6, 7)};
-      for (std::size_t i = 0; i < 4; ++i) __builtin_memcpy(&to[g + i][lane], &s[i], 16);
+      std::array<const void*, 4> rows;
+      for (std::size_t i = 0; i < 4; ++i) rows[i] = reinterpret_cast<const char*>(from[i]) + 4 * g;
+      turn_four(rows, {&to[g][lane], &to[g + 1][lane], &to[g + 2][lane], &to[g + 3][lane]});
     }
   }
-#else
-  static void turn(const std::array<const CollapseVertex*, 4>& from, Words& to, std::size_t lane) {
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t k = 0; k < 16; ++k)
-        std::memcpy(&to[k][lane + i], reinterpret_cast<const char*>(from[i]) + 4 * k, 4);
-  }
-#endif
 };
 
 /// What a point at p, or at q, costs beside the quadrics.

@@ -71,7 +71,11 @@ struct alignas(64) Work {
 void scale_ring(const HoleBatch& batch, Work& w) {
   alignas(64) Lanes largest{};
   for (std::size_t i = 0; i < w.n; ++i) VKMESH_LANES(l) {
-      const float x = batch.ring[i][0][l], y = batch.ring[i][1][l], z = batch.ring[i][2][l];
+      const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
+                  z = batch.ring[i][2][l] - batch.v[2][l];
+      w.ring[i][0][l] = x;
+      w.ring[i][1][l] = y;
+      w.ring[i][2][l] = z;
       const float squared = x * x + y * y + z * z, before = largest[l];
       largest[l] = squared > before ? squared : before;
     }
@@ -86,7 +90,7 @@ void scale_ring(const HoleBatch& batch, Work& w) {
     w.rounding2[l] = kRounding * kRounding * largest[l] * (scale * scale);
   }
   for (std::size_t i = 0; i < w.n; ++i)
-    for (std::size_t k = 0; k < 3; ++k) VKMESH_LANES(l) w.ring[i][k][l] = batch.ring[i][k][l] * w.scale[l];
+    for (std::size_t k = 0; k < 3; ++k) VKMESH_LANES(l) w.ring[i][k][l] *= w.scale[l];
 }
 
 void cross_all(Work& w) {
@@ -206,9 +210,11 @@ void find_quadric(const HoleBatch& batch, Work& w) {
     w.along2[l] =
         (x * (a0 * x + 2 * (a1 * y + a2 * z)) + y * (a3 * y + 2 * a4 * z) + a5 * z * z) * w.back2[l];
     w.of_length[l] = kOfLength * w.area[l] * w.back4[l];
-    const float px = batch.ring[0][0][l], py = batch.ring[0][1][l], pz = batch.ring[0][2][l];
-    const float dx = batch.ring[n - 1][0][l] - px, dy = batch.ring[n - 1][1][l] - py,
-                dz = batch.ring[n - 1][2][l] - pz;
+    const float px = batch.ring[0][0][l] - batch.v[0][l], py = batch.ring[0][1][l] - batch.v[1][l],
+                pz = batch.ring[0][2][l] - batch.v[2][l];
+    const float dx = batch.ring[n - 1][0][l] - batch.ring[0][0][l],
+                dy = batch.ring[n - 1][1][l] - batch.ring[0][1][l],
+                dz = batch.ring[n - 1][2][l] - batch.ring[0][2][l];
     const float squared = dx * dx + dy * dy + dz * dz;
     const float along = -(px * dx + py * dy + pz * dz) / (squared > 0 ? squared : 1.0f);
     const float t = along > 1 ? 1.0f : along > 0 ? along : 0.0f;

@@ -39,7 +39,9 @@ struct HoleBatch {
 
   // Input. What lies in lanes that were not set does not matter.
 
-  /// The neighbours relative to v, counter-clockwise.
+  /// Where v is.
+  alignas(64) std::array<Lanes, 3> v{};
+  /// Where its neighbours are, counter-clockwise.
   alignas(64) std::array<std::array<Lanes, 3>, kMost> ring;
   /// The quadric xᵀA x + 2 b·x + c about v, as CollapseVertex has it.
   alignas(64) std::array<Lanes, 6> a;

@@ -17,6 +17,7 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
+#include "decimation/four_rows.h"
 #include "decimation/hole.h"
 #include "decimation/star.h"
 
@@ -230,22 +231,44 @@ class VertexRemovals {
     for (std::size_t n = 1; n <= kMost; ++n)
       for (std::size_t from = first_[n]; from < first_[n + 1]; from += HoleBatch::kLanes) {
         const std::size_t count = std::min<std::size_t>(first_[n + 1] - from, HoleBatch::kLanes);
-        for (std::size_t lane = 0; lane < count; ++lane) set(holes_, lane, walked_[order_[from + lane]]);
+        set(holes_, std::span(order_).subspan(from, count));
+        const std::size_t next = from + count, left = first_[kMost + 1] - next;
+        for (std::size_t i = next; i < next + std::min(left, HoleBatch::kLanes); ++i) {
+          const HoleStar& star = walked_[order_[i]];
+          prefetch(&vertices_[star.vertex]);
+          for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.target[k]]);
+        }
         fill_holes(holes_, n, state_.limits.cos_deviation);
         for (std::size_t lane = 0; lane < count; ++lane) use(walked_[order_[from + lane]], lane);
       }
   }
 
-  void set(HoleBatch& holes, std::size_t lane, const HoleStar& star) const {
-    const CollapseVertex& v = vertices_[star.vertex];
-    for (std::size_t i = 0; i < star.neighbours(); ++i) {
-      const auto& r = vertices_[star.target[i]].position;
-      for (std::size_t k = 0; k < 3; ++k) holes.ring[i][k][lane] = r[k] - v.position[k];
+  /// Puts walked stars, all of as many neighbours, into the lanes from 0 on. Four records are turned at a
+  /// time from rows to columns.
+  void set(HoleBatch& holes, std::span<const std::uint32_t> walked) const {
+    alignas(16) std::array<float, 4> unused;
+    for (std::size_t lane = 0; lane < walked.size(); lane += 4) {
+      std::array<const HoleStar*, 4> stars;
+      std::array<const void*, 4> rows;
+      for (std::size_t i = 0; i < 4; ++i) {
+        stars[i] = &walked_[walked[std::min(lane + i, walked.size() - 1)]];
+        holes.closed[lane + i] = stars[i]->closed ? 1.0f : 0.0f;
+      }
+      const auto words = [&](std::size_t from) {
+        for (std::size_t i = 0; i < 4; ++i)
+          rows[i] = reinterpret_cast<const char*>(&vertices_[stars[i]->vertex]) + 4 * from;
+        return rows;
+      };
+      const auto at = [&](HoleBatch::Lanes& lanes) { return &lanes[lane]; };
+      turn_four(words(0), {at(holes.v[0]), at(holes.v[1]), at(holes.v[2]), unused.data()});
+      turn_four(words(4), {unused.data(), at(holes.a[0]), at(holes.a[1]), at(holes.a[2])});
+      turn_four(words(8), {at(holes.a[3]), at(holes.a[4]), at(holes.a[5]), at(holes.c)});
+      turn_four(words(12), {at(holes.b[0]), at(holes.b[1]), at(holes.b[2]), unused.data()});
+      for (std::size_t k = 0; k < stars[0]->neighbours(); ++k) {
+        for (std::size_t i = 0; i < 4; ++i) rows[i] = &vertices_[stars[i]->target[k]];
+        turn_four(rows, {at(holes.ring[k][0]), at(holes.ring[k][1]), at(holes.ring[k][2]), unused.data()});
+      }
     }
-    for (std::size_t k = 0; k < 6; ++k) holes.a[k][lane] = v.a[k];
-    for (std::size_t k = 0; k < 3; ++k) holes.b[k][lane] = v.b[k];
-    holes.c[lane] = v.c;
-    holes.closed[lane] = star.closed ? 1.0f : 0.0f;
   }
 
   /// Calls use(a, b) for the neighbours at the ends of each new edge.
@@ -263,9 +286,9 @@ class VertexRemovals {
     searches_.clear();
     for (Removal& removal : due_) {
       const HoleStar& star = *removal.star;
+      for (std::size_t i = 0; i < star.edges; ++i) prefetch(&mesh_.face(beyond(star, i)));  // to be joined
       for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {
         const std::uint32_t at = beyond(star, a > 0 ? a - 1 : star.edges - 1);
-        prefetch(&mesh_.face(at));
         searches_.push_back({at, CollapseMesh::next(star.edge[a]), star.target[b], &removal});
       });
     }
@@ -386,7 +409,8 @@ class VertexRemovals {
   /// Fills the hole again, without the edges that the mesh has already.
   void avoid_existing(Removal& removal) {
     const HoleStar& star = *removal.star;
-    set(other_, 0, star);
+    const auto walked = static_cast<std::uint32_t>(index_of(star));
+    set(other_, std::span(&walked, 1));
     while (bar_existing(star, removal.triangles)) {
       fill_holes(other_, star.neighbours(), state_.limits.cos_deviation);
       removal.error = other_.error[0];
@@ -456,8 +480,10 @@ class VertexRemovals {
     const Vector s = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, t = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
     return {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
   }
+  [[nodiscard]] static float dot(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
   [[nodiscard]] static float cosine(const Vector& a, const Vector& b) {
-    const auto dot = [](const Vector& x, const Vector& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
     const float lengths = std::sqrt(dot(a, a)) * std::sqrt(dot(b, b));
     return lengths > 0 ? dot(a, b) / lengths : 1.0f;
   }
@@ -465,18 +491,26 @@ class VertexRemovals {
   /// Whether two neighbouring triangles stand against each other by more than 120 degrees and by more than
   /// any did before.
   [[nodiscard]] bool folds_over(const HoleStar& star, const Triangles& triangles) const {
-    constexpr float kAgainst = -0.5f;
+    constexpr double kAgainst2 = 0.25;  // the cosine, squared
     const std::size_t n = star.neighbours();
     std::array<Vector, kMost> normals;
+    std::array<float, kMost> squared;
     std::array<std::array<std::uint8_t, kMost>, kMost> below;  // by a new edge the triangle before it
+    bool against = false;
     float after = 1;
     for (std::size_t t = star.closed ? 0 : 1; t < triangles.count; ++t) {
       const auto& [a, b, c] = triangles.of[t];
       normals[t] = normal(star.target[a], star.target[b], star.target[c]);
-      if (a != 0 || c + 1u != n) after = std::min(after, cosine(normals[t], normals[below[a][c]]));
+      squared[t] = dot(normals[t], normals[t]);
       below[a][b] = below[b][c] = static_cast<std::uint8_t>(t);
+      if (a == 0 && c + 1u == n) continue;
+      const std::size_t other = below[a][c];
+      const auto along = static_cast<double>(dot(normals[t], normals[other]));
+      if (along >= 0 || along * along <= kAgainst2 * squared[t] * squared[other]) continue;
+      against = true;
+      after = std::min(after, cosine(normals[t], normals[other]));
     }
-    if (after >= kAgainst) return false;
+    if (!against) return false;
     const auto face = [&](std::size_t i) {
       return normal(star.vertex, star.target[i % n], star.target[(i + 1) % n]);
     };
@@ -551,7 +585,7 @@ class VertexRemovals {
       float along = 0, squared = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const float d = holes.ring[c][k][lane] - holes.ring[0][k][lane];
-        along -= holes.ring[0][k][lane] * d;
+        along -= (holes.ring[0][k][lane] - holes.v[k][lane]) * d;
         squared += d * d;
       }
       const float t = squared > 0 ? std::clamp(along / squared, 0.0f, 1.0f) : 0.0f;
@@ -579,14 +613,15 @@ class VertexRemovals {
   }
 
   /// Adds a share of the quadric of `gone` to that of `heir`.
-  static void absorb(CollapseVertex& heir, CollapseVertex gone, float share) {
+  static void absorb(CollapseVertex& heir, const CollapseVertex& gone, float share) {
+    CollapseVertex moved = gone;
     std::array<float, 3> d;
     for (std::size_t k = 0; k < 3; ++k) d[k] = heir.position[k] - gone.position[k];
-    gone.shift(d);
-    for (std::size_t k = 0; k < 6; ++k) heir.a[k] += share * gone.a[k];
-    for (std::size_t k = 0; k < 3; ++k) heir.b[k] += share * gone.b[k];
-    heir.c += share * gone.c;
-    heir.weight += share * gone.weight;
+    moved.shift(d);
+    for (std::size_t k = 0; k < 6; ++k) heir.a[k] += share * moved.a[k];
+    for (std::size_t k = 0; k < 3; ++k) heir.b[k] += share * moved.b[k];
+    heir.c += share * moved.c;
+    heir.weight += share * moved.weight;
   }
 
   static constexpr std::uint32_t kTooMany = ~0u;
