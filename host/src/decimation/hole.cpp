@@ -11,6 +11,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #define VKMESH_LANES(l) _Pragma("GCC ivdep") _Pragma("GCC unroll 1") for (std::size_t l = 0; l < kLanes; ++l)
 #elif defined(__clang__)
+#pragma clang diagnostic ignored "-Wpass-failed"  // where little is optimised
 #define VKMESH_LANES(l) \
   _Pragma("clang loop vectorize(assume_safety)") for (std::size_t l = 0; l < kLanes; ++l)
 #else
