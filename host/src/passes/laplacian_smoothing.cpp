@@ -49,7 +49,9 @@ struct Four {
 };
 
 // By uniform weights, to the places of the group's vertices after `first`; `source` an array with one element
-// more than there are vertices. `ends_only`: only the first neighbour and the last count.
+// more than there are vertices. `ends_only`: only the first neighbour and the last count. `Far`: positions
+// come from memory.
+template <bool Far>
 void uniform_steps(const RingGroup& group, bool ends_only, float factor, const Vec3* source,
                    std::uint32_t first, Vec3* target) {
   Four here[kMost], sums[kMost], there[kMost];
@@ -58,6 +60,10 @@ void uniform_steps(const RingGroup& group, bool ends_only, float factor, const V
   const std::size_t count = group.vertices.size();
   const std::uint32_t* ring = group.rings.data();
   for (std::size_t i = 0; i < count; ++i, ring += group.valence) {
+    // What lies near each other in a ring mostly does so in memory.
+    if constexpr (Far)
+      for (std::uint32_t k = 0; k < group.valence; k += 3)
+        detail::prefetch(source + ring[k + detail::RingGroups::kRingsPast]);
     Four sum = Four::of(source + ring[0]);
     for (std::uint32_t k = stride; k < end; k += stride) sum += Four::of(source + ring[k]);
     sums[i] = sum;
@@ -175,7 +181,10 @@ Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
           detail::prefetch_for_later(source + ahead, (last - ahead) * sizeof(Vec3));
         ahead = last;
         groups.prefetch_rings_after(group);
-        uniform_steps(group, ends_only, factor, source, chunk.first, near.data());
+        if (count < kFewVertices)
+          uniform_steps<false>(group, ends_only, factor, source, chunk.first, near.data());
+        else
+          uniform_steps<true>(group, ends_only, factor, source, chunk.first, near.data());
       }
       if (count < kFewVertices)
         std::copy_n(near.begin(), size, target + chunk.first);

@@ -46,7 +46,7 @@ constexpr std::size_t kRingsAhead = 2048;
 RingGroups::RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out,
                        bool copy_rings)
     : order_(neighbours.vertex_count()),
-      rings_(copy_rings ? neighbours.ids.size() : 0),
+      rings_(copy_rings ? neighbours.ids.size() + kRingsPast : 0),
       chunks_((order_.size() + RingChunk::kMost - 1) / RingChunk::kMost) {
   const auto valence = [&](std::uint32_t v) { return neighbours.offsets[v + 1] - neighbours.offsets[v]; };
   const auto bit = [](std::span<const std::uint32_t> bits, std::uint32_t v) {
@@ -93,6 +93,7 @@ RingGroups::RingGroups(const NodeNeighbours& neighbours, std::span<const std::ui
         chunk.groups.push_back(group);
       }
     }
+    if (copy_rings) std::fill(rings_.data() + rings, rings_.data() + neighbours.offsets[last], 0u);
     return reaches;
   };
   const auto reaches = parallel_sum<Reaches>(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -102,6 +103,7 @@ RingGroups::RingGroups(const NodeNeighbours& neighbours, std::span<const std::ui
     return sum;
   });
   if (!copy_rings) return;
+  std::fill_n(rings_.data() + neighbours.ids.size(), kRingsPast, 0u);
   reach_ = reaches.of_nearly_all();
   if (reach_ > kFarthestReach) reach_ = 0;
 }

@@ -91,6 +91,9 @@ class RingGroups {
  public:
   explicit RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out = {},
                       bool copy_rings = false);
+  /// So many numbers of vertices can be read past a copied ring: those of others, or 0.
+  static constexpr std::size_t kRingsPast = 200;
+
   RingGroups(const RingGroups&) = delete;
   RingGroups& operator=(const RingGroups&) = delete;
 
