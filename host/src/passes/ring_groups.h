@@ -81,7 +81,7 @@ struct RingChunk {
   std::uint32_t first = 0, last = 0;
   std::vector<RingGroup> groups;
 
-  static constexpr std::size_t kMost = 2048;  ///< So that their positions stay in a near cache.
+  static constexpr std::size_t kMost = 8192;  ///< So that their positions stay in the second cache.
 };
 
 /// All vertices that have neighbours, but those whose bit is set in `left_out` (as in
