@@ -25,7 +25,7 @@ struct Block {
   std::vector<float> angles;
 };
 
-// Edges that are computed side by side, few enough to stay in the first cache: the normals on their sides.
+// Edges that are computed side by side, few enough to stay in the first cache.
 constexpr std::size_t kSideBySide = 128;
 struct Sides {
   std::array<Vec3, kSideBySide> left, right, along;

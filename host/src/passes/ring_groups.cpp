@@ -38,7 +38,7 @@ struct Reaches {
 
 // So many positions of twelve bytes still leave room in a second cache, or a third.
 constexpr std::size_t kFarthestReach = std::size_t{1} << 17;
-// What of the rings is asked for early: less than the time of a read from memory takes up.
+// Rings are asked for so many numbers early: a read from memory ends before its turn comes.
 constexpr std::size_t kRingsAhead = 2048;
 
 }  // namespace
