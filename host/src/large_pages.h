@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
+
+#include "parallel.h"
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -24,12 +27,22 @@ inline void prefer_large_pages([[maybe_unused]] void* data, [[maybe_unused]] std
 #endif
 }
 
+/// Makes [data, data + bytes) resident on all cores: one fills it afterwards.
+inline void touch_large_pages(void* data, std::size_t bytes) {
+  char* const begin = static_cast<char*>(data);
+  parallel_ranges(bytes / kLargePage, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) begin[i * kLargePage] = 0;
+  });
+}
+
 /// `size` elements made from nothing, in large pages as far as possible.
 template <class T>
 std::vector<T> large_vector(std::size_t size) {
+  static_assert(std::is_trivially_copyable_v<T>);
   std::vector<T> result;
   result.reserve(size);
   prefer_large_pages(result.data(), size * sizeof(T));
+  touch_large_pages(result.data(), size * sizeof(T));
   result.resize(size);
   return result;
 }

@@ -330,6 +330,34 @@ TEST_CASE("smoothing: iterations compose, zero iterations change nothing, isolat
   CHECK(laplacian_smoothing(neighbours, set.points, {.iterations = 0}).value() == set.points);
 }
 
+TEST_CASE("smoothing: each of many copies of a mesh, more than caches hold, goes the way of the mesh alone") {
+  IndexedFaceSet set = test::icosphere(4);
+  test::jitter(set, 0.03f, 5);
+  set.points.emplace_back(3.0f, 4.0f, 5.0f);  // isolated: stays
+  const NodeNeighbours one = node_neighbours(test::half_edges(set)).value();
+  const std::size_t vertices = set.points.size(), copies = (std::size_t{1} << 20) / vertices + 1;
+  NodeNeighbours many;
+  std::vector<Vec3> positions;
+  for (std::size_t copy = 0; copy < copies; ++copy) {
+    const auto ids = static_cast<std::uint32_t>(many.ids.size());
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    for (std::size_t v = 0; v < vertices; ++v) many.offsets.push_back(ids + one.offsets[v]);
+    for (const std::uint32_t id : one.ids) many.ids.push_back(first + id);
+    positions.insert(positions.end(), set.points.begin(), set.points.end());
+  }
+  many.offsets.push_back(static_cast<std::uint32_t>(many.ids.size()));
+  many.boundary_bits.assign((positions.size() + 31) / 32, 0);
+  for (const std::uint32_t iterations : {1u, 2u}) {
+    const LaplacianSmoothingOptions options = {.iterations = iterations};
+    const auto expected = laplacian_smoothing(one, set.points, options).value();
+    const auto smoothed = laplacian_smoothing(many, positions, options).value();
+    REQUIRE(smoothed.size() == positions.size());
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < smoothed.size(); ++i) equal += smoothed[i] == expected[i % vertices];
+    CHECK(equal == smoothed.size());
+  }
+}
+
 TEST_CASE("smoothing shrinks a noisy sphere towards its middle and removes the noise") {
   IndexedFaceSet set = test::icosphere(4);
   test::jitter(set, 0.03f, 11);

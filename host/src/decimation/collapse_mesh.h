@@ -9,19 +9,11 @@
 
 #include <vkmesh/handles.h>
 
-#include "decimation/large_array.h"
+#include "caches.h"
 #include "decimation/vertex_parts.h"
+#include "large_array.h"
 
 namespace vkmesh::detail {
-
-/// Asks for the cache line at `address` without waiting for it.
-[[gnu::always_inline]] inline void prefetch(const void* address) {
-#if defined(__GNUC__) || defined(__clang__)
-  __builtin_prefetch(address);
-#else
-  static_cast<void>(address);
-#endif
-}
 
 /// What decimation knows of a vertex, in one cache line: its place, the quadric Σ w (n·(x − position) − d)²
 /// of the planes that it stands for as xᵀA x + 2 b·x + c about its place, the sum of their weights, and where

@@ -1,28 +1,39 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <vkmesh/passes/dihedral_angles.h>
-#include <vkmesh/passes/triangle_normals.h>
 
+#include "caches.h"
 #include "catching.h"
+#include "large_array.h"
 #include "large_pages.h"
 #include "parallel.h"
 #include "passes/blocks.h"
 #include "passes/pass_input.h"
+#include "passes/raw_normals.h"
 
 namespace vkmesh {
 namespace {
 
-// Some edges by their smaller half-edges: the normals on their sides, and the signed angles between these.
-struct Block {
-  std::vector<std::uint32_t> edges;
-  std::vector<Vec3> left, right, along;
-  std::vector<float> angles;
+constexpr std::size_t kGrain = 1 << 12;
 
-  void resize(std::size_t n) {
-    edges.resize(n), left.resize(n), right.resize(n), along.resize(n), angles.resize(n);
-  }
+// Some edges by their smaller half-edges, and their angles.
+struct Block {
+  std::size_t count = 0;
+  std::vector<std::uint32_t> edges;
+  std::vector<float> angles;
 };
+
+// Edges that are computed side by side, few enough to stay in the first cache.
+constexpr std::size_t kSideBySide = 128;
+struct Sides {
+  std::array<Vec3, kSideBySide> left, right, along;
+};
+
+std::uint32_t next_of(std::uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
 
 }  // namespace
 
@@ -30,36 +41,53 @@ Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const
   return detail::catching([&]() -> Result<DihedralAngles> {
     VKMESH_CHECK(detail::require_triangles(mesh, "dihedral_angles"));
     const auto corners = mesh.origins(), twins = mesh.twins();
-    VKMESH_TRY(const std::vector<Vec3> normals, triangle_normals(mesh, positions));
+    VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+    detail::LargeArray<Vec3> normals(mesh.face_count());
+    detail::triangle_normals(mesh, positions, std::span(normals.data(), normals.size()));
     DihedralAngles result;
     result.half_edge = detail::large_vector<float>(corners.size());
     result.vertex_maximum = detail::large_vector<float>(positions.size());
-    // Edges are gathered in blocks small enough to stay in the cache, so that the angles fill vector
-    // registers.
     const auto measure = [&](std::size_t begin, std::size_t end, Block& block) {
-      block.resize(end - begin);
+      block.edges.resize(kGrain), block.angles.resize(kGrain);
       std::size_t count = 0;
       for (std::size_t h = begin; h < end; ++h) {
         block.edges[count] = static_cast<std::uint32_t>(h);
         // No branch, which would be guessed wrong every other time.
         count += static_cast<std::size_t>(twins[h] > h) & static_cast<std::size_t>(twins[h] != kInvalid);
       }
-      block.resize(count);
-      for (std::size_t i = 0; i < count; ++i) {
-        block.left[i] = normals[block.edges[i] / 3];
-        block.right[i] = normals[twins[block.edges[i]] / 3];
-        block.along[i] = positions[corners[twins[block.edges[i]]]] - positions[corners[block.edges[i]]];
+      block.count = count;
+      Sides sides;
+      for (std::size_t first = 0; first < count; first += kSideBySide) {
+        const std::size_t last = std::min(first + kSideBySide, count), size = last - first;
+        // What is far away is fetched while other angles are computed.
+        for (std::size_t i = last; i < std::min(last + kSideBySide, count); ++i) {
+          const std::uint32_t twin = twins[block.edges[i]];
+          detail::prefetch(&normals[twin / 3]);
+          detail::prefetch(&result.half_edge[twin]);
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+          const std::uint32_t h = block.edges[first + i];
+          sides.left[i] = normals[h / 3];
+          sides.right[i] = normals[twins[h] / 3];
+          sides.along[i] = positions[corners[next_of(h)]] - positions[corners[h]];
+        }
+        const auto angles = std::span(block.angles).subspan(first, size);
+        detail::dihedral_angles(std::span(sides.left).first(size), std::span(sides.right).first(size),
+                                std::span(sides.along).first(size), angles);
+        for (std::size_t i = 0; i < size; ++i) {
+          const std::uint32_t h = block.edges[first + i];
+          result.half_edge[h] = result.half_edge[twins[h]] = angles[i];
+        }
       }
-      detail::dihedral_angles(block.left, block.right, block.along, block.angles);
-      for (std::size_t i = 0; i < count; ++i)
-        result.half_edge[block.edges[i]] = result.half_edge[twins[block.edges[i]]] = block.angles[i];
     };
     const auto spread = [&](std::size_t, std::size_t, const Block& block) {
-      for (std::size_t i = 0; i < block.edges.size(); ++i)
-        for (const std::uint32_t end : {corners[block.edges[i]], corners[twins[block.edges[i]]]})
+      for (std::size_t i = 0; i < block.count; ++i) {
+        const std::uint32_t h = block.edges[i];
+        for (const std::uint32_t end : {corners[h], corners[next_of(h)]})
           result.vertex_maximum[end] = std::max(result.vertex_maximum[end], std::fabs(block.angles[i]));
+      }
     };
-    detail::parallel_in_order<Block>(corners.size(), 1 << 12, measure, spread);
+    detail::parallel_in_order<Block>(corners.size(), kGrain, measure, spread);
     return result;
   });
 }

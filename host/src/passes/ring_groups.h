@@ -10,6 +10,7 @@
 #include <vkmesh/node_neighbours.h>
 #include <vkmesh/vec.h>
 
+#include "large_array.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -18,6 +19,8 @@ namespace vkmesh::detail {
 /// over neighbours runs as often for each of them.
 struct RingGroup {
   std::span<const std::uint32_t> vertices;
+  std::span<const std::uint32_t>
+      rings;  ///< The neighbours of one after those of another, if they were copied.
   std::uint32_t valence = 0;
   bool boundary = false;
 
@@ -73,26 +76,53 @@ void go_around(const RingGroup& group, const Vec3* positions, const NodeNeighbou
   }
 }
 
+/// Consecutive vertices [first, last), those of its groups among them.
+struct RingChunk {
+  std::uint32_t first = 0, last = 0;
+  std::vector<RingGroup> groups;
+
+  static constexpr std::size_t kMost = 8192;  ///< So that their positions stay in the second cache.
+};
+
 /// All vertices that have neighbours, but those whose bit is set in `left_out` (as in
-/// NodeNeighbours::boundary_bits), in groups. O(vertices), in parallel. 4 bytes a vertex.
+/// NodeNeighbours::boundary_bits), in groups. O(vertices), in parallel. 4 bytes a vertex; with copied rings,
+/// for those that go around them many times, O(edges) and 4 bytes a directed edge more.
 class RingGroups {
  public:
-  explicit RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out = {});
+  explicit RingGroups(const NodeNeighbours& neighbours, std::span<const std::uint32_t> left_out = {},
+                      bool copy_rings = false);
+  /// So many numbers of vertices can be read past a copied ring: those of others, or 0.
+  static constexpr std::size_t kRingsPast = 200;
+
   RingGroups(const RingGroups&) = delete;
   RingGroups& operator=(const RingGroups&) = delete;
 
+  /// Calls body(chunk) for chunks that cover all vertices, on any threads.
+  template <class Body>
+  void for_each_chunk(Body&& body) const {
+    parallel_ranges(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) body(chunks_[c]);
+    });
+  }
   /// Calls body(group) for groups of at most RingGroup::kMost vertices that cover all, on any threads.
   template <class Body>
   void for_each(Body&& body) const {
-    parallel_ranges(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c)
-        for (const RingGroup& group : chunks_[c]) body(group);
+    for_each_chunk([&](const RingChunk& chunk) {
+      for (const RingGroup& group : chunk.groups) body(group);
     });
   }
 
+  /// How far ahead, in numbers of vertices, the neighbours of nearly all vertices lie at most, if rings were
+  /// copied; 0 where that is so far that caches would not keep what is asked for so early.
+  [[nodiscard]] std::size_t reach() const { return reach_; }
+
+  /// Asks for the copied rings that are wanted some groups after this one.
+  void prefetch_rings_after(const RingGroup& group) const;
+
  private:
-  std::vector<std::uint32_t> order_;
-  std::vector<std::vector<RingGroup>> chunks_;
+  LargeArray<std::uint32_t> order_, rings_;
+  std::vector<RingChunk> chunks_;
+  std::size_t reach_ = 0;
 };
 
 }  // namespace vkmesh::detail

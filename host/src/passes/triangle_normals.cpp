@@ -5,20 +5,27 @@
 #include "parallel.h"
 #include "passes/blocks.h"
 #include "passes/pass_input.h"
+#include "passes/raw_normals.h"
 
 namespace vkmesh {
+namespace detail {
+
+void triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, std::span<Vec3> normals) {
+  parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    const auto block = normals.subspan(begin, end - begin);
+    area_vectors(positions, mesh.origins().subspan(3 * begin, 3 * block.size()), block);
+    to_unit_vectors(block);
+  });
+}
+
+}  // namespace detail
 
 Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
   return detail::catching([&]() -> Result<std::vector<Vec3>> {
     VKMESH_CHECK(detail::require_triangles(mesh, "triangle_normals"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
-    const auto corners = mesh.origins();
     std::vector<Vec3> normals = detail::large_vector<Vec3>(mesh.face_count());
-    detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-      const auto block = std::span(normals).subspan(begin, end - begin);
-      detail::area_vectors(positions, corners.subspan(3 * begin, 3 * block.size()), block);
-      detail::to_unit_vectors(block);
-    });
+    detail::triangle_normals(mesh, positions, normals);
     return normals;
   });
 }

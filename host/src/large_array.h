@@ -8,12 +8,13 @@
 #include <type_traits>
 #include <utility>
 
+#include "caches.h"
 #include "large_pages.h"
 
 namespace vkmesh::detail {
 
-/// An array that is not filled when it is made, in large pages where the system grants them: what decimation
-/// reads next lies anywhere, and a walk through page tables costs as much as the read.
+/// An array that is not filled when it is made, in large pages where the system grants them: where what is
+/// read next lies anywhere, a walk through page tables costs as much as the read.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -29,6 +30,8 @@ class LargeArray {
 
   [[nodiscard]] T& operator[](std::size_t i) { return data_.get()[i]; }
   [[nodiscard]] const T& operator[](std::size_t i) const { return data_.get()[i]; }
+  [[nodiscard]] T* data() { return data_.get(); }
+  [[nodiscard]] const T* data() const { return data_.get(); }
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Keeps the first `kept` elements.
@@ -39,7 +42,6 @@ class LargeArray {
   }
 
  private:
-  static constexpr std::size_t kCacheLine = 64;
   struct Deleter {
     std::size_t alignment = kCacheLine;
     void operator()(T* data) const { ::operator delete(data, std::align_val_t(alignment)); }

@@ -1,0 +1,14 @@
+// triangle_normals() for the passes that go on with them.
+#pragma once
+
+#include <span>
+
+#include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/vec.h>
+
+namespace vkmesh::detail {
+
+/// Of triangles and checked positions, as many as there are faces.
+void triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, std::span<Vec3> normals);
+
+}  // namespace vkmesh::detail
