@@ -1,6 +1,7 @@
 // What decides about a removal beside its quadric error.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,6 +27,12 @@ class Criteria {
   /// Whether `cost` is anything but the quadric error.
   [[nodiscard]] bool ranks() const {
     return criteria_.density_weight > 0 || criteria_.aspect_weight > 0 || criteria_.normal_weight > 0;
+  }
+  /// What the shape of a triangle weighs when the quadric error weighs 1.
+  [[nodiscard]] float shape_over_quadric() const {
+    constexpr double kLeast = 1e-3;
+    const double ratio = criteria_.aspect_weight / std::max(criteria_.quadric_weight, kLeast);
+    return static_cast<float>(ratio * ratio);
   }
   [[nodiscard]] bool watches_distance() const { return watches_distance_; }
 

@@ -293,6 +293,33 @@ void judge_all(const HoleBatch& batch, Work& w) {
       }
 }
 
+// What the shapes of triangles count.
+void add_shapes(const HoleBatch& batch, Work& w) {
+  constexpr float kEquilateral = 1.1547005f;  // twice the area over the squared side, inverted
+  alignas(64) Lanes most{};
+  for (std::size_t i = 0; i < w.n; ++i) VKMESH_LANES(l) {
+      const float x = w.ring[i][0][l], y = w.ring[i][1][l], z = w.ring[i][2][l];
+      most[l] += (x * x + y * y + z * z) / static_cast<float>(w.n);
+    }
+  VKMESH_LANES(l) most[l] *= batch.shape * batch.weight[l] * w.back2[l];
+  std::size_t abc = 0;
+  for (std::size_t c = 2; c < w.n; ++c)
+    for (std::size_t b = 1; b < c; ++b)
+      for (std::size_t a = 0; a < b; ++a, ++abc) {
+        const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c);
+        VKMESH_LANES(l) {
+          const float nx = w.cross[ab][0][l] + w.cross[bc][0][l] - w.cross[ac][0][l];
+          const float ny = w.cross[ab][1][l] + w.cross[bc][1][l] - w.cross[ac][1][l];
+          const float nz = w.cross[ab][2][l] + w.cross[bc][2][l] - w.cross[ac][2][l];
+          const float p = w.distance2[ab][l], q = w.distance2[bc][l], r = w.distance2[ac][l];
+          const float longest2 = std::max(std::max(p, q), r);
+          const float quality =
+              kEquilateral * std::sqrt(nx * nx + ny * ny + nz * nz) / (longest2 > 0 ? longest2 : 1.0f);
+          w.total[abc][l] += most[l] * (1 - quality);
+        }
+      }
+}
+
 /// The best of kCount third corners from `from` on, and of those before when these are not the first.
 template <std::size_t kCount, bool kAreFirst>
 [[gnu::always_inline]] inline void choose(HoleBatch& batch, Work& w, std::size_t a, std::size_t c,
@@ -370,6 +397,7 @@ VKMESH_FLAT_CLONES void fill_holes(HoleBatch& batch, std::size_t neighbours, flo
   find_sides(batch, w);
   find_quadric(batch, w);
   judge_all(batch, w);
+  if (batch.shape > 0) add_shapes(batch, w);
   choose_all(batch, w);
 }
 

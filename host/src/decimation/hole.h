@@ -49,8 +49,14 @@ struct HoleBatch {
   alignas(64) Lanes c;
   /// 1: the faces go all around v; 0: v lies on the boundary between the last neighbour and the first.
   alignas(64) Lanes closed;
+  /// The area that v stands for.
+  alignas(64) Lanes weight{};
   /// 0; infinite for a new edge that may not be made.
   alignas(64) std::array<Lanes, kPairs> barred{};
+  /// Of all lanes: a new triangle of aspect ratio R counts (1 - 1/R) times this, the weight and the mean of
+  /// the squared distances of the neighbours from v. It decides between triangulations, and is no part of the
+  /// error.
+  float shape = 0;
 
   // Result.
 

@@ -36,6 +36,7 @@ class VertexRemovals {
         vertices_(state.mesh.vertices),
         queue_(vertices_.size(), vertices_.size()) {
     due_.reserve(kStars);
+    if (state_.criteria != nullptr) holes_.shape = other_.shape = state_.criteria->shape_over_quadric();
   }
 
   static constexpr std::size_t kStep = Queue::kExact ? 1 : 512;
@@ -261,7 +262,7 @@ class VertexRemovals {
       };
       const auto at = [&](HoleBatch::Lanes& lanes) { return &lanes[lane]; };
       turn_four(words(0), {at(holes.v[0]), at(holes.v[1]), at(holes.v[2]), unused.data()});
-      turn_four(words(4), {unused.data(), at(holes.a[0]), at(holes.a[1]), at(holes.a[2])});
+      turn_four(words(4), {at(holes.weight), at(holes.a[0]), at(holes.a[1]), at(holes.a[2])});
       turn_four(words(8), {at(holes.a[3]), at(holes.a[4]), at(holes.a[5]), at(holes.c)});
       turn_four(words(12), {at(holes.b[0]), at(holes.b[1]), at(holes.b[2]), unused.data()});
       for (std::size_t k = 0; k < stars[0]->neighbours(); ++k) {
