@@ -31,7 +31,7 @@ using test::run, test::ways;
 
 SurfaceDistance between(const IndexedFaceSet& mesh, const Decimated& result) {
   auto distance =
-      surface_distance({mesh.points, mesh.corners}, {result.positions, result.mesh.origins()}, {20000, 1, 0});
+      surface_distance({mesh.points, mesh.corners}, {result.positions, result.mesh.origins()}, {5000, 1, 0});
   if (!distance) FAIL(distance.error().describe());
   return *distance;
 }

@@ -155,7 +155,7 @@ IndexedFaceSet manifold_part(const IndexedFaceSet& mesh) {
 TEST_CASE("decimation: every single collapse keeps the topology and the structure", "[decimate]") {
   const DecimateOperation operation = any_operation();
   for (const auto& [name, shape] : small_shapes())
-    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    for (std::uint32_t seed = 0; seed < 4; seed += test::kSanitized ? 3 : 1) {
       IndexedFaceSet mesh = shape;
       if (seed > 0) test::jitter(mesh, 0.15f * static_cast<float>(seed), seed);
       const HalfEdgeMesh input = half_edges(mesh);
