@@ -15,19 +15,19 @@ row() {
   local bound=$1
   shift
   build/release/bin/vkmesh simplify $mesh "$scratch/out.ply" "$@" --json >"$scratch/simplified" 2>/dev/null
-  build/release/bin/vkmesh compare $mesh "$scratch/out.ply" --tolerance 5 --json >"$scratch/compared" 2>/dev/null
+  build/release/bin/vkmesh compare $mesh "$scratch/out.ply" --tolerance 0 --samples 500000 --json >"$scratch/compared" 2>/dev/null
   local told
   told=$(jq -s '.[0].result.distance_bound / .[1].result.diagonal' "$scratch/simplified" "$scratch/compared")
   printf '| %s | %s | %s | %s | %s | %.1f s |\n' "$bound" "$(percent .result.ratio "$scratch/simplified")" \
     "$(awk -v x="$told" 'BEGIN { printf "%.3g %%", 100 * x }')" \
-    "$(percent '.result.two_sided.hausdorff_high / .result.diagonal' "$scratch/compared")" \
+    "$(percent '.result.two_sided.maximum / .result.diagonal' "$scratch/compared")" \
     "$(percent '.result.two_sided.mean / .result.diagonal' "$scratch/compared")" \
     "$(jq '.timings_ms.compute / 1000' "$scratch/simplified")"
 }
 {
-  echo "| \`--max-relative-distance\` | faces left | bound told | Hausdorff distance at most | mean | takes |"
+  echo "| \`--max-relative-distance\` | faces left | bound told | largest of 500,000 samples each way | mean | takes |"
   echo "| --- | ---: | ---: | ---: | ---: | ---: |"
-  for bound in 1e-4 3e-4 1e-3 3e-3; do row $bound --ratio 0.005 --max-relative-distance $bound; done
+  for bound in 3e-4 1e-3 3e-3; do row $bound --ratio 0.005 --max-relative-distance $bound; done
   row "none, \`--ratio 0.1 --watch-distance\`" --ratio 0.1 --watch-distance
 } >$result
 sed -i -e '/^<!-- distances -->/,/^<!-- end of distances -->/{//!d}' -e "/^<!-- distances -->/r $result" docs/decimation.md
