@@ -233,13 +233,14 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
 }
 
 TEST_CASE("decimation: what is nearly the cheapest does as well as the cheapest", "[decimate]") {
-  IndexedFaceSet mesh = test::icosphere(test::kSanitized ? 4 : 5);
+  IndexedFaceSet mesh = test::icosphere(5);
   for (Vec3& p : mesh.points)
     p *= 1.0f + 0.05f * std::sin(9 * p.x) * std::sin(11 * p.y + 1) + 0.02f * std::sin(23 * p.z);
   const TriangleSurface surface{mesh.points, mesh.corners};
   for (const auto operation : {DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse,
                                DecimateOperation::kVertexRemoval})
     for (const double ratio : {0.3, 0.1, 0.03}) {
+      if (test::kSanitized && ratio != 0.1) continue;
       INFO("operation " << static_cast<int>(operation) << " to " << ratio);
       DecimateOptions options;
       options.operation = operation;
