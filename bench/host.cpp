@@ -48,9 +48,10 @@ Result<void> add_host(Programme& programme, const Input& input) {
       {step::kConstruction, name, [&input] { return timed([&] { return to_half_edge_mesh(input.mesh); }); }});
   programme.contestants.push_back(
       {step::kNeighbours, name, [mesh] { return timed([&] { return node_neighbours(*mesh); }); }});
-  programme.contestants.push_back({step::kNormals, name, [&input, mesh] {
-                                     return timed([&] { return vertex_normals(*mesh, input.mesh.points); });
-                                   }});
+  programme.contestants.push_back(
+      {step::kNormals, name, [&input, mesh, normals = std::vector<Vec3>(mesh->vertex_count())]() mutable {
+         return timed([&] { return vertex_normals(*mesh, input.mesh.points, normals); });
+       }});
   programme.contestants.push_back(
       {step::kSmoothing, name, [&input, neighbours] {
          LaplacianSmoothingOptions options;

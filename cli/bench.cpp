@@ -75,8 +75,13 @@ class HostBench : public BenchPlace {
   Result<void> for_each_pass(const BenchSubject& s, const std::string& only,
                              const std::function<Result<void>(const BenchPass&)>& use) override {
     const BenchBytes bytes(s);
-    const auto normals = [&s](NormalWeights weights) {
-      return [&s, weights] { return timed([&] { return vertex_normals(s.mesh, s.positions, {weights}); }); };
+    // Into memory that is there already, as an engine has it: the passes are timed and not the system's
+    // pages.
+    std::vector<Vec3> at_vertices(s.mesh.vertex_count()), at_faces(s.mesh.face_count());
+    const auto normals = [&](NormalWeights weights) {
+      return [&s, &at_vertices, weights] {
+        return timed([&] { return vertex_normals(s.mesh, s.positions, at_vertices, {weights}); });
+      };
     };
     const auto steps = [&s](LaplacianSmoothingOptions options) {
       return [&s, options]() -> Result<double> {
@@ -89,7 +94,7 @@ class HostBench : public BenchPlace {
     const CollapseCostOptions frame = unit_frame(s.positions);
     std::vector<BenchPass> passes = {
         {"triangle normals", bytes.triangle_normals,
-         [&s] { return timed([&] { return triangle_normals(s.mesh, s.positions); }); }},
+         [&] { return timed([&] { return triangle_normals(s.mesh, s.positions, at_faces); }); }},
         {"vertex normals", bytes.vertex_normals, normals(NormalWeights::kArea)},
         {"vertex normals by angle", bytes.vertex_normals, normals(NormalWeights::kAngle)},
         {"dihedral angles", bytes.dihedral_angles,

@@ -512,3 +512,20 @@ TEST_CASE("passes take triangles only, and one position for each vertex") {
   CHECK(vertex_normals(test::half_edges(cube), std::span(cube.points).first(5)).error().code ==
         ErrorCode::kUsage);
 }
+
+TEST_CASE("normals into memory of the caller are those of their own, whatever it held") {
+  const IndexedFaceSet set = noisy_shapes().front();
+  const HalfEdgeMesh sphere = test::half_edges(set);
+  const Vec3 before(7.0f);
+  std::vector<Vec3> at_faces(sphere.face_count(), before), at_vertices(sphere.vertex_count(), before);
+  CHECK(triangle_normals(sphere, set.points, std::span(at_faces).first(5)).error().code == ErrorCode::kUsage);
+  CHECK(vertex_normals(sphere, set.points, std::span(at_vertices).first(5)).error().code ==
+        ErrorCode::kUsage);
+  CHECK((at_faces[0] == before && at_vertices[0] == before));
+  REQUIRE(triangle_normals(sphere, set.points, at_faces));
+  CHECK(at_faces == triangle_normals(sphere, set.points).value());
+  for (const NormalWeights weights : {NormalWeights::kArea, NormalWeights::kAngle, NormalWeights::kUniform}) {
+    REQUIRE(vertex_normals(sphere, set.points, at_vertices, {weights}));
+    CHECK(at_vertices == vertex_normals(sphere, set.points, {weights}).value());
+  }
+}

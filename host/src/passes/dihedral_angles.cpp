@@ -43,7 +43,7 @@ Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const
     const auto corners = mesh.origins(), twins = mesh.twins();
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
     detail::LargeArray<Vec3> normals(mesh.face_count());
-    detail::triangle_normals(mesh, positions, std::span(normals.data(), normals.size()));
+    detail::raw_triangle_normals(mesh, positions, std::span(normals.data(), normals.size()));
     DihedralAngles result;
     result.half_edge = detail::large_vector<float>(corners.size());
     result.vertex_maximum = detail::large_vector<float>(positions.size());

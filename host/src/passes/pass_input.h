@@ -22,4 +22,10 @@ inline Result<void> require_positions(std::span<const Vec3> positions, std::size
               std::to_string(positions.size()) + " positions for " + std::to_string(vertices) + " vertices");
 }
 
+inline Result<void> require_size(std::span<const Vec3> normals, std::size_t size, const char* of) {
+  if (normals.size() == size) return {};
+  return fail(ErrorCode::kUsage, "room for " + std::to_string(normals.size()) + " normals of " +
+                                     std::to_string(size) + " " + of);
+}
+
 }  // namespace vkmesh::detail

@@ -9,6 +9,6 @@
 namespace vkmesh::detail {
 
 /// Of triangles and checked positions, as many as there are faces.
-void triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, std::span<Vec3> normals);
+void raw_triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, std::span<Vec3> normals);
 
 }  // namespace vkmesh::detail

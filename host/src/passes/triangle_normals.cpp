@@ -10,7 +10,8 @@
 namespace vkmesh {
 namespace detail {
 
-void triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, std::span<Vec3> normals) {
+void raw_triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                          std::span<Vec3> normals) {
   parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     const auto block = normals.subspan(begin, end - begin);
     area_vectors(positions, mesh.origins().subspan(3 * begin, 3 * block.size()), block);
@@ -20,12 +21,21 @@ void triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
 
 }  // namespace detail
 
-Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
-  return detail::catching([&]() -> Result<std::vector<Vec3>> {
+Result<void> triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                              std::span<Vec3> normals) {
+  return detail::catching([&]() -> Result<void> {
     VKMESH_CHECK(detail::require_triangles(mesh, "triangle_normals"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+    VKMESH_CHECK(detail::require_size(normals, mesh.face_count(), "faces"));
+    detail::raw_triangle_normals(mesh, positions, normals);
+    return {};
+  });
+}
+
+Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions) {
+  return detail::catching([&]() -> Result<std::vector<Vec3>> {
     std::vector<Vec3> normals = detail::large_vector<Vec3>(mesh.face_count());
-    detail::triangle_normals(mesh, positions, normals);
+    VKMESH_CHECK(triangle_normals(mesh, positions, normals));
     return normals;
   });
 }

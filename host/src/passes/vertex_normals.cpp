@@ -19,13 +19,13 @@ struct Block {
 
 }  // namespace
 
-Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                         const VertexNormalsOptions& options) {
-  return detail::catching([&]() -> Result<std::vector<Vec3>> {
+Result<void> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                            std::span<Vec3> normals, const VertexNormalsOptions& options) {
+  return detail::catching([&]() -> Result<void> {
     VKMESH_CHECK(detail::require_triangles(mesh, "vertex_normals"));
     VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
+    VKMESH_CHECK(detail::require_size(normals, mesh.vertex_count(), "vertices"));
     const bool by_angle = options.weights == NormalWeights::kAngle;
-    std::vector<Vec3> normals = detail::large_vector<Vec3>(positions.size());
     const auto corners_of = [&](std::size_t begin, std::size_t end) {
       return mesh.origins().subspan(3 * begin, 3 * (end - begin));
     };
@@ -50,10 +50,20 @@ Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<con
         for (std::size_t f = 0; f < block.normals.size(); ++f)
           for (std::size_t i = 0; i < 3; ++i) normals[corners[3 * f + i]] += block.normals[f];
     };
+    std::ranges::fill(normals, Vec3(0.0f));
     detail::parallel_in_order<Block>(mesh.face_count(), 1 << 14, weigh, scatter);
     detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-      detail::to_unit_vectors(std::span(normals).subspan(begin, end - begin));
+      detail::to_unit_vectors(normals.subspan(begin, end - begin));
     });
+    return {};
+  });
+}
+
+Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                         const VertexNormalsOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<Vec3>> {
+    std::vector<Vec3> normals = detail::large_vector<Vec3>(mesh.vertex_count());
+    VKMESH_CHECK(vertex_normals(mesh, positions, normals, options));
     return normals;
   });
 }

@@ -16,4 +16,10 @@ namespace vkmesh {
 [[nodiscard]] Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh,
                                                          std::span<const Vec3> positions);
 
+/// The same into memory of the caller, one vector for each face: nothing is allocated, which is most of the
+/// time of a pass over millions of faces whose result is new each time. Errors: also kUsage where the size of
+/// `normals` differs; it is left as it was.
+[[nodiscard]] Result<void> triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                            std::span<Vec3> normals);
+
 }  // namespace vkmesh

@@ -33,4 +33,9 @@ struct VertexNormalsOptions {
                                                        std::span<const Vec3> positions,
                                                        const VertexNormalsOptions& options = {});
 
+/// The same into memory of the caller, one vector for each vertex, whatever it held. Errors: also kUsage
+/// where the size of `normals` differs; it is left as it was.
+[[nodiscard]] Result<void> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                          std::span<Vec3> normals, const VertexNormalsOptions& options = {});
+
 }  // namespace vkmesh
