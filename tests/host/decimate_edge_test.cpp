@@ -14,6 +14,8 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <vkmesh/consolidate.h>
 #include <vkmesh/creases.h>
@@ -23,6 +25,7 @@
 #include <vkmesh/triangulate.h>
 
 #include "decimate_support.h"
+#include "decimation/collapse_order.h"
 #include "support/data.h"
 #include "support/shapes.h"
 
@@ -142,18 +145,24 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
           "[decimate]") {
   for (const DecimateOptions& way : ways()) {
     if (way.operation == DecimateOperation::kVertexRemoval) continue;  // histories tell no triangulation
-    for (std::uint32_t seed = 0; seed < 4; ++seed)
-      for (const IndexedFaceSet& shape :
-           {test::icosphere(2), test::torus(9, 5), test::grid(6, 5), test::cylinder(4, 7),
-            test::both(test::cube(), test::torus(5, 4))}) {
+    for (std::uint32_t seed = 0; seed < 6; ++seed) {
+      const bool parted = seed >= 4;
+      const auto order = parted ? detail::CollapseOrder::kParted : detail::CollapseOrder::kFast;
+      const std::vector<IndexedFaceSet> shapes =
+          parted ? std::vector{test::icosphere(2), test::torus(14, 11), test::grid(14, 13),
+                               test::both(test::icosphere(1), test::torus(12, 9))}
+                 : std::vector{test::icosphere(2), test::torus(9, 5), test::grid(6, 5), test::cylinder(4, 7),
+                               test::both(test::cube(), test::torus(5, 4))};
+      for (const IndexedFaceSet& shape : shapes) {
         IndexedFaceSet mesh = shape;
         if (seed > 0) test::jitter(mesh, 0.1f * static_cast<float>(seed), seed);
         DecimateOptions options = way;
         options.keep_history = true;
         options.max_normal_deviation = seed % 2 == 0 ? 1.3 : 2.5;
         options.boundary = seed == 2 ? DecimateBoundary::kFree : DecimateBoundary::kInShape;
-        const HalfEdgeMesh input = half_edges(mesh);
-        const Decimated result = run(input, mesh.points, options);
+        const auto done = detail::decimate({mesh.points, mesh.corners}, options, order);
+        REQUIRE(done);
+        const Decimated& result = *done;
         REQUIRE(validate(result.mesh));
         REQUIRE(result.mesh.face_count() > 0);
         CHECK(result.stop == DecimateStop::kNoLegalCollapse);
@@ -180,6 +189,53 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
         for (std::uint32_t v = 0; v < stands.size(); ++v)
           CHECK(result.source_vertex[result.vertex_map[v]] == stands[v]);
       }
+    }
+  }
+}
+
+TEST_CASE("decimation: parts side by side do the same on any number of threads", "[decimate]") {
+  // More threads than there may be cores.
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
+  test::jitter(mesh, 0.05f, 1);
+  for (const DecimateOptions& way : ways()) {
+    if (way.operation == DecimateOperation::kVertexRemoval) continue;  // of one part
+    for (const double ratio : {0.5, 0.1, 0.0}) {
+      DecimateOptions options = way;
+      options.target_ratio = ratio;
+      options.keep_history = true;
+      const auto on = [&](int threads) {
+        tbb::task_arena arena(threads);
+        return arena.execute([&] {
+          auto result =
+              detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+          REQUIRE(result);
+          REQUIRE(validate(result->mesh));
+          return std::move(*result);
+        });
+      };
+      const Decimated one = on(1);
+      if (ratio > 0) {
+        CHECK(one.stop == DecimateStop::kTargetReached);
+        const auto target =
+            static_cast<std::size_t>(std::llround(ratio * static_cast<double>(mesh.face_count())));
+        CHECK(one.mesh.face_count() <= target);
+        CHECK(one.mesh.face_count() + 2 > target);
+      } else {
+        CHECK(one.held.link + one.held.fold_over > 0);
+      }
+      for (const int threads : {2, 3, 8}) {
+        const Decimated many = on(threads);
+        CHECK(std::ranges::equal(many.mesh.origins(), one.mesh.origins()));
+        CHECK(many.positions == one.positions);
+        CHECK(many.vertex_map == one.vertex_map);
+        CHECK(many.collapses == one.collapses);
+        CHECK(many.rejected_fold_over == one.rejected_fold_over);
+        CHECK(std::ranges::equal(many.history, one.history, [](const auto& a, const auto& b) {
+          return a.kept == b.kept && a.removed == b.removed && a.position == b.position && a.faces == b.faces;
+        }));
+      }
+    }
   }
 }
 

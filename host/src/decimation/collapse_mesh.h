@@ -61,7 +61,9 @@ class CollapseMesh {
  public:
   struct alignas(32) Face {
     std::array<std::uint32_t, 3> origin;
-    std::uint32_t tags;  // bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked
+    /// Bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked; bit 8 + i: its origin is on
+    /// the seam between parts.
+    std::uint32_t tags;
     std::array<std::uint32_t, 3> twin;
     std::uint32_t source;  // its number in the input
 
@@ -125,6 +127,20 @@ class CollapseMesh {
     const std::uint32_t t = twin(h);
     face(h).tags &= ~(16u << (h & 3u));
     face(t).tags &= ~(16u << (t & 3u));
+  }
+
+  /// Whether an end of the edge is on the seam between parts.
+  [[nodiscard]] bool at_seam(std::uint32_t h) const {
+    const std::uint32_t i = h & 3u, n = next(h) & 3u;
+    return (face(h).tags & (256u << i | 256u << n)) != 0;
+  }
+  /// Of a vertex that is not isolated. O(valence).
+  void set_on_seam(std::uint32_t v) {
+    std::uint32_t h = vertices[v].leading;
+    do {
+      face(h).tags |= 256u << (h & 3u);
+      h = around_vertex(h);
+    } while (h != vertices[v].leading);
   }
 
   /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. The link

@@ -24,7 +24,15 @@ class LazyQueue {
   void insert_now(std::uint32_t id) { queue_.insert_now(id); }
   void erase(std::uint32_t) {}
   [[nodiscard]] bool is_due(std::uint32_t, float cost) const { return queue_.is_due(cost); }
-  std::size_t take(std::span<std::uint32_t> out) { return queue_.take(out); }
+  std::size_t take(std::span<std::uint32_t> out, std::uint32_t last = MonotoneQueue::kLast) {
+    return queue_.take(out, last);
+  }
+  /// That is being served.
+  [[nodiscard]] std::uint32_t bucket() const { return queue_.floor(); }
+  /// The first bucket that holds any; kNone when empty.
+  [[nodiscard]] std::uint32_t first() const { return queue_.first(); }
+  /// All that another holds.
+  void absorb(LazyQueue& other) { queue_.absorb(other.queue_); }
 
  private:
   MonotoneQueue queue_;
@@ -41,10 +49,11 @@ class ExactQueue {
   void insert(std::uint32_t id, float cost) { heap_.set(id, cost); }
   void insert_now(std::uint32_t id) { heap_.set(id, -1.0f); }
   void erase(std::uint32_t id) { heap_.remove(id); }
+  [[nodiscard]] std::uint32_t bucket() const { return 0; }
   [[nodiscard]] bool is_due(std::uint32_t id, float cost) const {
     return heap_.empty() || cost < heap_.top_priority() || (cost == heap_.top_priority() && id < heap_.top());
   }
-  std::size_t take(std::span<std::uint32_t> out) {
+  std::size_t take(std::span<std::uint32_t> out, std::uint32_t = 0) {
     if (heap_.empty()) return 0;
     out[0] = heap_.top();
     heap_.pop();

@@ -20,6 +20,7 @@
 #include "decimation/edge_collapses.h"
 #include "decimation/frame.h"
 #include "decimation/gather_result.h"
+#include "decimation/parted_collapses.h"
 #include "decimation/prune.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/spatial_order.h"
@@ -35,10 +36,10 @@ using namespace detail;
 template <class Placement, bool kAttributes>
 Result<Outcome> run_collapses(DecimationState& state, bool exact, const Progress& progress) {
   if (state.criteria != nullptr && state.criteria->ranks())
-    return run_removals<EdgeCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state, progress);
+    return run_removals<PartedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state, progress);
   if constexpr (Placement::kMayFall != MayFall::kAll)
-    if (!exact) return run_removals<EdgeCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
-  return run_removals<EdgeCollapses<Placement, ExactQueue, kAttributes>>(state, progress);
+    if (!exact) return run_removals<PartedCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
+  return run_removals<PartedCollapses<Placement, ExactQueue, kAttributes>>(state, progress);
 }
 
 template <bool kAttributes>
@@ -304,6 +305,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         attributes ? &*attributes : nullptr,
                         criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         options.boundary == DecimateBoundary::kKept};
+  if (order == CollapseOrder::kParted) state.part_faces = 32;
   VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
   BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome, state.attributes);
   if (criteria.watches_distance()) result.distance_bound = criteria.distance(mesh) / frame.scale;

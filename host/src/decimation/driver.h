@@ -35,6 +35,7 @@ struct Event {
   std::array<float, 3> position;
   bool moved;  // from where the input has it
   std::array<std::uint32_t, 2> faces;
+  std::uint32_t bucket = 0;  // of its cost, where parts are decimated side by side
 };
 
 struct Outcome {
@@ -45,6 +46,16 @@ struct Outcome {
   Census held{};                     // in the end, where no target was reached
   std::size_t held_by_boundary = 0;  // of those that are locked
   std::vector<Event> events;
+
+  /// What has been done meanwhile.
+  Outcome& operator+=(const Outcome& more) {
+    error2 = std::max(error2, more.error2);
+    attribute_error2 = std::max(attribute_error2, more.attribute_error2);
+    collapses += more.collapses;
+    for (std::size_t i = 0; i < rejected.size(); ++i) rejected[i] += more.rejected[i];
+    events.insert(events.end(), more.events.begin(), more.events.end());
+    return *this;
+  }
 };
 
 struct DecimationState {
@@ -56,6 +67,7 @@ struct DecimationState {
   AttributeQuadrics* attributes = nullptr;  // none
   Criteria* criteria = nullptr;             // none
   bool boundary_kept = false;
+  std::size_t part_faces = std::size_t{1} << 16;  // of parts that are decimated side by side
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,11 +18,13 @@
 
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
+#include "decimation/collapse_queues.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
 #include "decimation/face_turns.h"
 #include "decimation/star.h"
+#include "decimation/territories.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -69,17 +72,30 @@ struct ByCriteria : Placement {
 template <class Placement, class Queue, bool kAttributes = false>
 class EdgeCollapses {
  public:
-  explicit EdgeCollapses(DecimationState& state)
-      : state_(state),
-        mesh_(state.mesh),
-        vertices_(state.mesh.vertices),
-        queue_(mesh_.half_edge_bound(), 3 * mesh_.face_count() / 2 + 1) {}
+  /// What a thread works on by itself: all edges, or those of a part of the surface.
+  struct Share {
+    /// `edges`: about how many the queue will hold.
+    Share(DecimationState& all, std::size_t edges, Territory where = {})
+        : state(all), territory(where), queue(all.mesh.half_edge_bound(), edges) {}
+
+    DecimationState& state;
+    Territory territory;
+    Queue queue;
+    std::uint32_t last = MonotoneQueue::kLast;  // bucket that is served
+    /// Half-edges of edges that others must see to, and vertices whose parked edges they must.
+    std::vector<std::uint32_t> handed_on, to_revive;
+  };
+
+  explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
+
+  void work_on(Share& share) { share_ = &share; }
 
   /// About how many removals one step tries.
   static constexpr std::size_t kStep = Queue::kBatch;
 
-  /// All edges with their costs.
-  void fill() {
+  /// Calls put(half-edge, cost) for all edges.
+  template <class Put>
+  void fill(Put&& put) {
     constexpr std::uint32_t kAhead = 64;
     constexpr std::size_t kGrain = 1 << 12;
     struct Block {
@@ -111,18 +127,49 @@ class EdgeCollapses {
       }
     };
     const auto finish = [&](std::size_t, std::size_t, Block& block) {
-      for (std::size_t i = 0; i < block.count; ++i) queue_.fill(block.ids[i], block.cost[i]);
+      for (std::size_t i = 0; i < block.count; ++i) put(block.ids[i], block.cost[i]);
     };
     parallel_in_order<Block>(mesh_.face_count(), kGrain, make, finish);
-    queue_.start();
+  }
+
+  /// Steps while anything is due by `last`, a bucket of the queue, and no limit is met.
+  void run(std::uint32_t last) {
+    share_->last = last;
+    while (!share_->state.reached() && step()) {
+    }
+    put_back();
+    forget_touched();
+  }
+
+  /// Takes over what another has handed on.
+  void take_over(Share& other) {
+    for (const std::uint32_t h : other.handed_on) share_->queue.insert_now(h);
+    for (const std::uint32_t v : other.to_revive)
+      if (vertices_[v].alive() && vertices_[v].has(CollapseVertex::kHasParked)) revive_at(v);
+    other.handed_on.clear();
+    other.to_revive.clear();
   }
 
   /// Takes the next of the queue and does what is legal and due. False when nothing is left.
   bool step() {
-    std::array<std::uint32_t, Queue::kBatch> taken{};
-    const std::size_t count = queue_.take(taken);
-    serve(std::span(taken).first(count));
-    return count > 0;
+    std::rotate(pending_.begin(), pending_.begin() + 1, pending_.end());
+    auto& [now, next, later, last] = pending_;
+    if (Queue::kBatch > 1 && (share_->territory.is_part() || share_->state.faces > kInCache)) {
+      take(*last);
+      evaluate(*next);
+    } else {
+      evaluate(*next);
+      if (now->count == 0 && next->count == 0 && later->count == 0) {
+        take(*now);
+        fetch(*now, kAll);
+        look_at(*now, kAll);
+        evaluate(*now);
+      }
+      walk(*now, kAll);
+    }
+    const bool any = now->count + next->count + later->count + last->count > 0;
+    serve(*now, *next, *later, *last);
+    return any;
   }
 
   /// What holds each edge that is left.
@@ -134,10 +181,10 @@ class EdgeCollapses {
         // Rounding differs from one half of the edge to the other, and it was one of them that was refused.
         Legality why = judge_alone(h);
         if (why == Legality::kLegal) why = judge_alone(mesh_.twin(h));
-        ++state_.outcome.held[static_cast<std::size_t>(why)];
-        if (why == Legality::kLocked && state_.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
+        ++share_->state.outcome.held[static_cast<std::size_t>(why)];
+        if (why == Legality::kLocked && share_->state.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
             mesh_.on_boundary(mesh_.target(h)))
-          ++state_.outcome.held_by_boundary;
+          ++share_->state.outcome.held_by_boundary;
       }
   }
 
@@ -151,11 +198,11 @@ class EdgeCollapses {
     });
     if constexpr (kAttributes && Placement::kAtEnds) {
       EndCosts end_costs;
-      state_.attributes->add_to_ends(batch, edges, end_costs);
+      share_->state.attributes->add_to_ends(batch, edges, end_costs);
       place_at_end(batch, end_costs, edges.size());
       return;
     }
-    if constexpr (kAttributes) state_.attributes->add_to(batch, edges);
+    if constexpr (kAttributes) share_->state.attributes->add_to(batch, edges);
     Placement::place(batch, edges.size());
   }
 
@@ -173,7 +220,7 @@ class EdgeCollapses {
         const CollapseVertex &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
         take_star(star, edges[i],
                   place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
-        ranks[i] = state_.criteria->cost(batch.cost[i], p.weight + q.weight, star);
+        ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, star);
       }
     } else {
       std::copy_n(batch.cost.begin(), edges.size(), ranks);
@@ -214,42 +261,176 @@ class EdgeCollapses {
       for (const std::uint32_t start : {h, t}) add_others_at(start);
   }
 
-  // What follows happens to all edges of the batch before the next thing does: what one waits for from
-  // memory comes while the others are looked at. Conditions that cannot be foretold count, and do not jump.
-  void serve(std::span<const std::uint32_t> taken) {
-    for (const std::uint32_t h : taken) prefetch(&mesh_.face(h));
-    std::array<std::uint32_t, Queue::kBatch> ids;
-    std::size_t count = 0;
-    for (const std::uint32_t h : taken) {
-      ids[count] = h;
-      count += mesh_.alive(h) && mesh_.queued(h) ? 1 : 0;
-    }
-    for (const std::uint32_t h : std::span(ids).first(count)) {
-      prefetch(&vertices_[mesh_.origin(h)]);
-      prefetch(&vertices_[mesh_.target(h)]);
-    }
-    evaluate(std::span(ids).first(count));
-    const float* const ranks = ranks_of(std::span(ids).first(count));
-    std::size_t due = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (queue_.is_due(ids[i], ranks[i])) {
-        due_[due++] = due_of(i, ids[i]);
-      } else {
-        queue_.insert(ids[i], ranks[i]);
-      }
-    }
-    walk_rings(due);
-    for (std::size_t i = 0; i < due && !state_.reached(); ++i) attempt(i);
-    for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
-    touched_.clear();
-  }
-
   struct Due {
     std::uint32_t half_edge;
     float cost;
     std::int32_t end;
     std::array<float, 3> x;
   };
+
+  static constexpr std::uint32_t kWalked = 16, kTooLong = ~0u;
+  struct Walked {
+    std::array<std::uint32_t, kWalked> vertex;  // the first `size` are meant
+    std::uint32_t size;                         // kTooLong when there are more
+  };
+
+  /// Edges on their way from the queue to their collapse.
+  struct Pending {
+    std::array<std::uint32_t, Queue::kBatch> ids;  // `count` were taken, of them `live` stay
+    std::size_t count = 0, fetched = 0, looked_at = 0, live = 0;
+    std::array<Due, Queue::kBatch> due;
+    std::size_t due_count = 0;
+    std::array<Walked, 2 * Queue::kBatch> walked;                  // those of p and q of each due edge
+    std::array<std::uint32_t, 2 * Queue::kBatch> at, start, walk;  // of `walks` under way
+    std::size_t walks = 0, walker = 0, go_on = 0;
+    std::uint32_t steps = 0;
+    std::size_t tried = 0;
+    bool evaluated = false;
+
+    void reset() {
+      count = fetched = looked_at = live = due_count = walks = tried = 0;
+      evaluated = false;
+    }
+  };
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kInCache = 1 << 14;
+
+  void take(Pending& b) { b.count = share_->queue.take(b.ids, share_->last); }
+
+  void fetch(Pending& b, std::size_t some) {
+    const std::size_t end = some < b.count - b.fetched ? b.fetched + some : b.count;
+    for (; b.fetched < end; ++b.fetched) prefetch(&mesh_.face(b.ids[b.fetched]));
+  }
+
+  /// At `some` more of those taken.
+  void look_at(Pending& b, std::size_t some) {
+    // Conditions that cannot be foretold count, and do not jump.
+    const std::size_t end = some < b.count - b.looked_at ? b.looked_at + some : b.count;
+    for (; b.looked_at < end; ++b.looked_at) {
+      const std::uint32_t h = b.ids[b.looked_at];
+      b.ids[b.live] = h;
+      const bool live = mesh_.alive(h) && mesh_.queued(h);
+      if (live && !is_mine(h)) [[unlikely]] {
+        share_->handed_on.push_back(h);
+        continue;
+      }
+      b.live += live ? 1 : 0;
+      prefetch(&vertices_[mesh_.face(h).origin[h & 3u]]);
+      prefetch(&vertices_[mesh_.target(h)]);
+    }
+  }
+
+  void evaluate(Pending& b) {
+    if (b.count == 0) return;
+    std::size_t live = 0;
+    for (const std::uint32_t h : std::span(b.ids).first(b.live)) {
+      b.ids[live] = h;
+      live += mesh_.alive(h) && mesh_.queued(h) ? 1 : 0;
+    }
+    const auto ids = std::span(b.ids).first(live);
+    evaluate(ids);
+    const float* const ranks = ranks_of(ids);
+    b.evaluated = true;
+    b.due_count = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (share_->queue.is_due(ids[i], ranks[i])) {
+        b.due[b.due_count++] = due_of(i, ids[i]);
+      } else {
+        share_->queue.insert(ids[i], ranks[i]);
+      }
+    }
+    b.walks = 2 * b.due_count;
+    b.walker = b.go_on = b.steps = 0;
+    for (std::size_t i = 0; i < b.due_count; ++i) {
+      const std::uint32_t h = b.due[i].half_edge, t = mesh_.twin(h);
+      prefetch(&mesh_.face(t));
+      b.at[2 * i] = b.start[2 * i] = h;
+      b.at[2 * i + 1] = b.start[2 * i + 1] = t;
+    }
+    for (std::uint32_t i = 0; i < b.walks; ++i) b.walk[i] = i;
+  }
+
+  /// Walks around the ends of all due edges, one step of each in turn: one waits for all. `some` more steps.
+  void walk(Pending& b, std::size_t some) {
+    while (some > 0 && b.walks > 0) {
+      const std::size_t end = some < b.walks - b.walker ? b.walker + some : b.walks;
+      some -= end - b.walker;
+      std::size_t left = b.go_on;
+      for (std::size_t i = b.walker; i < end; ++i) {
+        const std::uint32_t w = b.walk[i], before = CollapseMesh::previous(b.at[i]), out = mesh_.twin(before),
+                            v = mesh_.origin(before);
+        prefetch(&vertices_[v]);
+        prefetch(&mesh_.face(out));
+        b.walked[w].vertex[b.steps] = v;
+        // What an earlier batch takes away meanwhile leads to where it lay.
+        const bool gone = v == kInvalid;
+        b.walked[w].size = gone ? kTooLong : b.steps;
+        b.at[left] = out;
+        b.walk[left] = w;
+        left += (out != b.start[w]) & !gone ? 1 : 0;
+      }
+      b.go_on = left;
+      b.walker = end;
+      if (end < b.walks) return;
+      b.walks = left;
+      b.walker = b.go_on = 0;
+      if (++b.steps < kWalked) continue;
+      for (std::size_t i = 0; i < b.walks; ++i) b.walked[b.walk[i]].size = kTooLong;
+      b.walks = 0;
+    }
+  }
+
+  [[nodiscard]] bool is_mine(std::uint32_t h) const {
+    return !share_->territory.is_part() || !mesh_.at_seam(h);
+  }
+  void enqueue_now(std::uint32_t h) {
+    if (is_mine(h))
+      share_->queue.insert_now(h);
+    else
+      share_->handed_on.push_back(h);
+  }
+
+  /// What was taken and not looked at in earnest.
+  void put_back() {
+    for (auto& b : pending_) {
+      for (std::size_t i = b->tried; i < b->due_count; ++i) put_back(b->due[i].half_edge);
+      // Those that were evaluated are due, or in the queue again.
+      if (!b->evaluated)
+        for (const std::uint32_t h : std::span(b->ids).first(b->live)) put_back(h);
+      for (const std::uint32_t h : std::span(b->ids).subspan(b->looked_at, b->count - b->looked_at))
+        put_back(h);
+      b->reset();
+    }
+  }
+  void put_back(std::uint32_t h) {
+    if (mesh_.alive(h) && mesh_.queued(h)) enqueue_now(h);
+  }
+  void forget_touched() {
+    for (auto* touched : {&before_, &touched_}) {
+      for (const std::uint32_t v : *touched) vertices_[v].source &= ~CollapseVertex::kTouched;
+      touched->clear();
+    }
+  }
+
+  void serve(Pending& now, Pending& next, Pending& later, Pending& last) {
+    // A ring has six vertices or so.
+    const std::size_t walks = 8 * next.walks, looks = later.count, fetches = last.count,
+                      all = std::max<std::size_t>(now.due_count, 1);
+    for (; now.tried < now.due_count && !share_->state.reached(); ++now.tried) {
+      attempt(now, now.tried);
+      walk(next, walks / all + 1);
+      look_at(later, looks / all + 1);
+      fetch(last, fetches / all + 1);
+    }
+    walk(next, kAll);
+    look_at(later, kAll);
+    fetch(last, kAll);
+    // What the last batch touched is known now to the rings of this one.
+    for (const std::uint32_t v : before_) vertices_[v].source &= ~CollapseVertex::kTouched;
+    before_.clear();
+    std::swap(before_, touched_);
+    if (now.tried == now.due_count) now.reset();
+  }
 
   /// Of a lane of the batch.
   [[nodiscard]] Due due_of(std::size_t i, std::uint32_t half_edge) const {
@@ -262,42 +443,6 @@ class EdgeCollapses {
     Ring p, q;
   };
 
-  static constexpr std::uint32_t kWalked = 16, kTooLong = ~0u;
-  struct Walked {
-    std::array<std::uint32_t, kWalked> vertex;  // the first `size` are meant
-    std::uint32_t size;                         // kTooLong when there are more
-  };
-
-  // Walks around the ends of all due edges, one step of each in turn: one waits for all.
-  void walk_rings(std::size_t due) {
-    std::array<std::uint32_t, 2 * Queue::kBatch> at, start, walk;
-    const std::size_t walks = 2 * due;
-    for (std::size_t i = 0; i < due; ++i) {
-      const std::uint32_t h = due_[i].half_edge, t = mesh_.twin(h);
-      prefetch(&mesh_.face(t));
-      at[2 * i] = start[2 * i] = h;
-      at[2 * i + 1] = start[2 * i + 1] = t;
-    }
-    for (std::uint32_t i = 0; i < walks; ++i) walk[i] = i;
-    std::size_t left = walks;
-    for (std::uint32_t step = 0; step < kWalked && left > 0; ++step) {
-      const std::size_t now = left;
-      left = 0;
-      for (std::size_t i = 0; i < now; ++i) {
-        const std::uint32_t w = walk[i], before = CollapseMesh::previous(at[i]), out = mesh_.twin(before),
-                            v = mesh_.origin(before);
-        prefetch(&vertices_[v]);
-        prefetch(&mesh_.face(out));
-        walked_[w].vertex[step] = v;
-        walked_[w].size = step;
-        at[left] = out;
-        walk[left] = w;
-        left += out != start[w] ? 1 : 0;
-      }
-    }
-    for (std::size_t i = 0; i < left; ++i) walked_[walk[i]].size = kTooLong;
-  }
-
   // Of the origin of h, from beyond its target.
   Ring collect_ring(std::uint32_t h, std::vector<std::uint32_t>& ring) const {
     ring.clear();
@@ -306,21 +451,21 @@ class EdgeCollapses {
     return ring;
   }
 
-  void attempt(std::size_t i) {
-    const Due& due = due_[i];
+  void attempt(const Pending& b, std::size_t i) {
+    const Due& due = b.due[i];
     const std::uint32_t h = due.half_edge;
     if (!mesh_.alive(h) || !mesh_.queued(h)) return;
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
     if (vertices_[p].has(CollapseVertex::kTouched) || vertices_[q].has(CollapseVertex::kTouched)) {
-      queue_.insert_now(h);
+      share_->queue.insert_now(h);
       return;
     }
     Rings rings;
-    const Legality legality = judge(i, p, q, rings);
+    const Legality legality = judge(b, i, p, q, rings);
     if (legality == Legality::kLegal) {
       collapse(due, p, q, rings);
     } else {
-      ++state_.outcome.rejected[static_cast<std::size_t>(legality)];
+      ++share_->state.outcome.rejected[static_cast<std::size_t>(legality)];
       mesh_.clear_queued(h);
       mesh_.set_parked(h);
       vertices_[p].source |= CollapseVertex::kHasParked;
@@ -330,24 +475,28 @@ class EdgeCollapses {
 
   [[nodiscard]] Legality judge_alone(std::uint32_t h) {
     evaluate(std::span(&h, 1));
-    due_[0] = due_of(0, h);
-    walk_rings(1);
+    Pending& alone = *pending_[0];
+    alone.due[0] = due_of(0, h);
+    alone.walked[0].size = kTooLong;
     Rings rings;
-    return judge(0, mesh_.origin(h), mesh_.target(h), rings);
+    return judge(alone, 0, mesh_.origin(h), mesh_.target(h), rings);
   }
 
   /// Sets `rings` when it comes to that.
-  [[nodiscard]] Legality judge(std::size_t i, std::uint32_t p, std::uint32_t q, Rings& rings) {
-    const Due& due = due_[i];
+  [[nodiscard]] Legality judge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
+                               Rings& rings) {
+    const Due& due = b.due[i];
     if (due.end == 3) return Legality::kLocked;
     if constexpr (kAttributes)
-      if (!state_.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
+      if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
     if (exceeds_error(p, q, geometric_cost(p, q, due))) return Legality::kError;
-    rings = rings_of(i);
+    rings = rings_of(b, i);
     if (!link_condition(rings, q)) return Legality::kLink;
-    if (turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x, state_.limits.cos_deviation))
+    if (turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x,
+                          share_->state.limits.cos_deviation))
       return Legality::kFoldOver;
-    return state_.criteria == nullptr || !state_.criteria->bounds() || meets_criteria(due, p, q, rings)
+    return share_->state.criteria == nullptr || !share_->state.criteria->bounds() ||
+                   meets_criteria(due, p, q, rings)
                ? Legality::kLegal
                : Legality::kCriterion;
   }
@@ -358,29 +507,29 @@ class EdgeCollapses {
     star_.edges_before =
         std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
     star_.edges_after = at_p + at_q - 4 - (mesh_.on_boundary(p) || mesh_.on_boundary(q) ? 1 : 0);
-    return state_.criteria->allow(star_);
+    return share_->state.criteria->allow(star_);
   }
 
   /// Of a collapse: its whole cost, but for what attributes have of it.
   [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const Due& due) const {
-    if constexpr (kAttributes) return state_.attributes->geometric_cost(p, q, due.x);
+    if constexpr (kAttributes) return share_->state.attributes->geometric_cost(p, q, due.x);
     return due.cost;
   }
   [[nodiscard]] bool exceeds_error(std::uint32_t p, std::uint32_t q, float cost) const {
     const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
-    return static_cast<double>(cost) > state_.limits.error2 * weight;
+    return static_cast<double>(cost) > share_->state.limits.error2 * weight;
   }
 
   /// The rings that were walked, unless a collapse of this batch was near; their vertices are the corners of
   /// `turns_`, and their flags `ring_flags_`.
-  Rings rings_of(std::size_t i) {
-    const Walked &at_p = walked_[2 * i], &at_q = walked_[2 * i + 1];
+  Rings rings_of(const Pending& b, std::size_t i) {
+    const Walked &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
     if (at_p.size != kTooLong && at_q.size != kTooLong) {
       const Rings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size)};
       ring_flags_ = turns_.set(vertices_, rings.p, rings.q);
       if ((ring_flags_ & CollapseVertex::kTouched) == 0) return rings;
     }
-    const std::uint32_t h = due_[i].half_edge;
+    const std::uint32_t h = b.due[i].half_edge;
     const Rings rings{collect_ring(h, ring_p_), collect_ring(mesh_.twin(h), ring_q_)};
     ring_flags_ = turns_.set(vertices_, rings.p, rings.q);
     return rings;
@@ -420,7 +569,7 @@ class EdgeCollapses {
                      : due.end == 1;
     const float geometric = geometric_cost(p, q, due);
     if constexpr (kAttributes) {
-      const Wedges& wedges = state_.attributes->wedges();
+      const Wedges& wedges = share_->state.attributes->wedges();
       if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
     }
     if (keep_p) h = mesh_.twin(h);
@@ -439,11 +588,11 @@ class EdgeCollapses {
     kept.c += gone.c;
     kept.weight += gone.weight;
     if constexpr (kAttributes) {
-      state_.attributes->collapse(h, dg, dk);
+      share_->state.attributes->collapse(h, dg, dk);
       const double rest = static_cast<double>(due.cost) - static_cast<double>(geometric);
-      if (const float weight = state_.attributes->weight(q_now); weight > 0)
-        state_.outcome.attribute_error2 =
-            std::max(state_.outcome.attribute_error2, rest / static_cast<double>(weight));
+      if (const float weight = share_->state.attributes->weight(q_now); weight > 0)
+        share_->state.outcome.attribute_error2 =
+            std::max(share_->state.outcome.attribute_error2, rest / static_cast<double>(weight));
     }
     if (place != kept.position) kept.source |= CollapseVertex::kMoved;
     kept.position = place;
@@ -453,25 +602,28 @@ class EdgeCollapses {
 
     const std::uint32_t t = mesh_.twin(h);
     const CollapseMesh::Face &one = mesh_.face(h), &other = mesh_.face(t);
-    if (state_.keep_events)
-      state_.outcome.events.push_back({kept.source & CollapseVertex::kSourceMask,
-                                       gone.source & CollapseVertex::kSourceMask,
-                                       place,
-                                       kept.has(CollapseVertex::kMoved),
-                                       {one.source, other.source}});
-    if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(star_);
+    if (share_->state.keep_events)
+      share_->state.outcome.events.push_back({kept.source & CollapseVertex::kSourceMask,
+                                              gone.source & CollapseVertex::kSourceMask,
+                                              place,
+                                              kept.has(CollapseVertex::kMoved),
+                                              {one.source, other.source},
+                                              share_->queue.bucket()});
+    if (share_->state.criteria != nullptr && share_->state.criteria->bounds())
+      share_->state.criteria->keep(star_);
     erase_queued(h);
     erase_queued(t);
     const std::uint32_t to_a = mesh_.twin(CollapseMesh::previous(h)),
                         from_a = mesh_.twin(CollapseMesh::next(h));
     const std::uint32_t to_b = mesh_.twin(CollapseMesh::previous(t)),
                         from_b = mesh_.twin(CollapseMesh::next(t));
-    state_.faces -= mesh_.collapse(h);
-    --state_.vertices;
-    ++state_.outcome.collapses;
+    share_->state.faces -= mesh_.collapse(h);
+    --share_->state.vertices;
+    ++share_->state.outcome.collapses;
     if (kept.weight > 0)
-      state_.outcome.error2 =
-          std::max(state_.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
+      share_->state.outcome.error2 = std::max(
+          share_->state.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
+    share_->territory.merge(mesh_, keep_p ? q : p, q_now, keep_p ? rings.q : rings.p);
     join(to_a, from_a);
     join(to_b, from_b);
     if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
@@ -485,7 +637,7 @@ class EdgeCollapses {
   void erase_queued(std::uint32_t h) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t g = (h & ~3u) + i;
-      if (mesh_.queued(g)) queue_.erase(g);
+      if (mesh_.queued(g)) share_->queue.erase(g);
     }
   }
 
@@ -496,10 +648,10 @@ class EdgeCollapses {
     if (mesh_.queued(g)) {
       if (!mesh_.queued(t)) return;
       mesh_.clear_queued(t);
-      queue_.erase(t);
+      share_->queue.erase(t);
     } else if (!mesh_.queued(t)) {
       mesh_.set_queued(g);
-      queue_.insert_now(g);
+      enqueue_now(g);
     }
   }
 
@@ -517,7 +669,12 @@ class EdgeCollapses {
       }
       evaluate(std::span(ids).first(count));
       const float* const ranks = ranks_of(std::span(ids).first(count));
-      for (std::size_t i = 0; i < count; ++i) queue_.insert(ids[i], ranks[i]);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (is_mine(ids[i]))
+          share_->queue.insert(ids[i], ranks[i]);
+        else
+          share_->handed_on.push_back(ids[i]);
+      }
     }
   }
 
@@ -545,7 +702,12 @@ class EdgeCollapses {
     if ((ring_flags_ & CollapseVertex::kHasParked) != 0)
       for (const Ring& ring : {rings.p, rings.q})
         for (const std::uint32_t r : ring)
-          if (vertices_[r].has(CollapseVertex::kHasParked)) revive_at(r);
+          if (vertices_[r].has(CollapseVertex::kHasParked)) {
+            if (!share_->territory.is_part() || share_->territory.holds(r))
+              revive_at(r);
+            else
+              share_->to_revive.push_back(r);
+          }
     if (vertices_[v].has(CollapseVertex::kHasParked)) revive_at(v);
   }
   void revive_at(std::uint32_t v) {
@@ -556,22 +718,22 @@ class EdgeCollapses {
       if (mesh_.parked(h)) {
         mesh_.clear_parked(h);
         mesh_.set_queued(h);
-        queue_.insert_now(h);
+        enqueue_now(h);
       }
       h = mesh_.around_vertex(h);
     } while (h != start);
   }
 
-  DecimationState& state_;
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
-  Queue queue_;
+  Share* share_ = nullptr;
   EdgeBatch batch_;
   EdgeBatch::Lanes ranks_;
   Star star_;
-  std::array<Due, Queue::kBatch> due_;
-  std::array<Walked, 2 * Queue::kBatch> walked_;  // those of p and q of each due edge
-  std::vector<std::uint32_t> touched_, sorted_, ring_p_, ring_q_;
+  std::array<std::unique_ptr<Pending>, 4> pending_ = {
+      std::make_unique<Pending>(), std::make_unique<Pending>(), std::make_unique<Pending>(),
+      std::make_unique<Pending>()};
+  std::vector<std::uint32_t> before_, touched_, sorted_, ring_p_, ring_q_;
   FaceTurns turns_;
   std::uint32_t ring_flags_ = 0;
 };

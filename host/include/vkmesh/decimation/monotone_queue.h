@@ -34,6 +34,8 @@ class MonotoneQueue {
     return (std::bit_cast<std::uint32_t>(priority) & 0x7fffffffu) >> kShift;
   }
 
+  /// The bucket that is being served.
+  [[nodiscard]] std::uint32_t floor() const { return floor_; }
   /// Whether an id of this priority would be served now.
   [[nodiscard]] bool is_due(float priority) const { return bucket(priority) <= floor_; }
 
@@ -41,13 +43,22 @@ class MonotoneQueue {
   /// Into the bucket that is being served.
   void insert_now(std::uint32_t id) { insert_in(floor_, id); }
 
-  /// Moves up to out.size() ids of the lowest bucket to `out` and returns how many; 0 when empty.
-  std::size_t take(std::span<std::uint32_t> out) {
-    if (size_ == 0) return 0;
+  /// The lowest bucket that holds an id; kNone when empty.
+  [[nodiscard]] std::uint32_t first() const {
+    if (size_ == 0) return kNone;
     std::uint32_t word = floor_ / 64;
     std::uint64_t bits = occupied_[word] & (~std::uint64_t{0} << floor_ % 64);
     while (bits == 0) bits = occupied_[++word];
-    floor_ = word * 64 + static_cast<std::uint32_t>(std::countr_zero(bits));
+    return word * 64 + static_cast<std::uint32_t>(std::countr_zero(bits));
+  }
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0}, kLast = kNone - 1;
+
+  /// Moves up to out.size() ids of the lowest bucket to `out` and returns how many; 0 when empty, or when
+  /// that bucket lies above `last`.
+  std::size_t take(std::span<std::uint32_t> out, std::uint32_t last = kLast) {
+    const std::uint32_t lowest = first();
+    if (lowest > last) return 0;
+    floor_ = lowest;
 
     std::size_t count = 0;
     std::uint32_t end = ends_[floor_];
@@ -64,6 +75,13 @@ class MonotoneQueue {
     if (end == 0) occupied_[floor_ / 64] &= ~(std::uint64_t{1} << floor_ % 64);
     size_ -= count;
     return count;
+  }
+
+  /// Takes all that another queue holds, into the same buckets or that being served.
+  void absorb(MonotoneQueue& other) {
+    std::array<std::uint32_t, kChunk> ids;
+    while (const std::size_t count = other.take(ids))
+      for (std::size_t i = 0; i < count; ++i) insert_in(std::max(other.floor_, floor_), ids[i]);
   }
 
  private:

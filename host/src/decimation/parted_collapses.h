@@ -1,0 +1,169 @@
+// Edge collapses in several parts of a large surface side by side.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "decimation/collapse_queues.h"
+#include "decimation/driver.h"
+#include "decimation/edge_collapses.h"
+#include "decimation/territories.h"
+#include "parallel.h"
+
+namespace vkmesh::detail {
+
+/// Edge collapses, the cheapest first. A large surface is divided, and the order is one to an octave: in
+/// rounds, each part does by itself what costs no more than the round's limit, and then one thread does what
+/// lies on the seam between parts. What happens depends on the surface, and not on how many threads there
+/// are. With attributes or criteria a surface is one part.
+template <class Placement, class Queue, bool kAttributes>
+class PartedCollapses {
+ public:
+  static constexpr std::size_t kStep = kRemovalsBetweenReports;
+
+  explicit PartedCollapses(DecimationState& state) : state_(state) {
+    const std::size_t count = part_count(), edges = 3 * state.mesh.face_count() / 2 + 1;
+    if (count > 1) {
+      labels_ = divide(state.mesh, count);
+      for (std::size_t i = 0; i < count; ++i)
+        parts_.push_back(
+            std::make_unique<Part>(state, edges / count, Territory(labels_, static_cast<std::uint8_t>(i))));
+    }
+    rest_ = count > 1 ? std::make_unique<Share>(state, edges / 16, Territory(labels_, Territory::kSeam))
+                      : std::make_unique<Share>(state, edges);
+  }
+
+  void fill() {
+    Worker& worker = mine();
+    if (parts_.empty()) {
+      worker.fill([&](std::uint32_t h, float cost) { rest_->queue.fill(h, cost); });
+      rest_->queue.start();
+      return;
+    }
+    const CollapseMesh& mesh = state_.mesh;
+    worker.fill([&](std::uint32_t h, float cost) {
+      (mesh.at_seam(h) ? *rest_ : parts_[labels_[mesh.origin(h)] & ~Territory::kInner]->share)
+          .queue.insert(h, cost);
+    });
+  }
+
+  bool step() {
+    if constexpr (!Queue::kExact) {
+      if (!parts_.empty() && is_late()) unite();
+      if (!parts_.empty()) return round();
+    }
+    Worker& worker = mine();
+    for (std::size_t i = 0; i < kStep / Queue::kBatch && !state_.reached(); ++i)
+      if (!worker.step()) return i > 0;
+    return true;
+  }
+
+  void hold() { mine().hold(); }
+
+ private:
+  using Worker = EdgeCollapses<Placement, Queue, kAttributes>;
+  using Share = typename Worker::Share;
+
+  static constexpr std::size_t kMostParts = 64;
+  /// Buckets of a round: two octaves, and a quarter of one for the last part of the removals, which decides
+  /// over what is left.
+  static constexpr std::uint32_t kFar = 32, kNear = 4;
+
+  [[nodiscard]] std::size_t part_count() const {
+    if (Queue::kExact || kAttributes || state_.criteria != nullptr) return 1;
+    return std::clamp<std::size_t>(std::bit_floor(state_.mesh.face_count() / state_.part_faces), 1,
+                                   kMostParts);
+  }
+
+  struct Part {
+    Part(const DecimationState& all, std::size_t edges, Territory territory)
+        : limits(all.limits),
+          state{all.mesh, limits, 0, 0, all.keep_events, {}, nullptr, nullptr, all.boundary_kept},
+          share(state, edges, territory) {
+      limits.faces = limits.vertices = kRest;
+    }
+
+    void run(Worker& worker, std::size_t most_faces, std::size_t most_vertices, std::uint32_t last) {
+      faces = most_faces;
+      vertices = most_vertices;
+      state.faces = kRest + faces;
+      state.vertices = kRest + vertices;
+      worker.work_on(share);
+      worker.run(last);
+    }
+
+    void report_to(DecimationState& all) {
+      all.faces -= kRest + faces - state.faces;
+      all.vertices -= kRest + vertices - state.vertices;
+      all.outcome += state.outcome;
+      state.outcome = {};
+    }
+
+    static constexpr std::size_t kRest = 2;  // faces that a collapse may remove beyond the limit
+    Limits limits;
+    std::size_t faces = 0, vertices = 0;
+    DecimationState state;
+    Share share;
+  };
+
+  /// Of this thread, at work on what lies outside the parts.
+  Worker& mine() {
+    Worker& worker = workers_.local();
+    worker.work_on(*rest_);
+    return worker;
+  }
+
+  bool round() {
+    std::uint32_t last = rest_->queue.first();
+    for (const auto& part : parts_) last = std::min(last, part->share.queue.first());
+    if (last == MonotoneQueue::kNone) return false;
+    last += (is_near() ? kNear : kFar) - 1;
+    // So few that together they cannot go beyond the limits.
+    const std::size_t divisor = 2 * parts_.size(), faces = (state_.faces - state_.limits.faces) / divisor,
+                      vertices = (state_.vertices - state_.limits.vertices) / divisor;
+    parallel_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) parts_[i]->run(workers_.local(), faces, vertices, last);
+    });
+    Worker& worker = mine();
+    const auto done = static_cast<std::ptrdiff_t>(state_.outcome.events.size());
+    for (const auto& part : parts_) {
+      part->report_to(state_);
+      worker.take_over(part->share);
+    }
+    // A history that stops anywhere has done as much in each part.
+    std::ranges::stable_sort(state_.outcome.events.begin() + done, state_.outcome.events.end(), {},
+                             &Event::bucket);
+    worker.run(last);
+    return true;
+  }
+
+  [[nodiscard]] bool is_near() const {
+    return 4 * (state_.faces - state_.limits.faces) < state_.mesh.face_count() - state_.limits.faces ||
+           4 * (state_.vertices - state_.limits.vertices) < state_.mesh.apex() - state_.limits.vertices;
+  }
+  [[nodiscard]] bool is_late() const {
+    // Parts must have some faces, and some to remove in a round.
+    const std::size_t few = std::max(state_.part_faces / 16, 4 * parts_.size());
+    return state_.faces < state_.part_faces / 16 * parts_.size() ||
+           state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;
+  }
+  void unite() {
+    for (const auto& part : parts_) rest_->queue.absorb(part->share.queue);
+    parts_.clear();
+    rest_->last = MonotoneQueue::kLast;
+  }
+
+  DecimationState& state_;
+  std::vector<std::uint8_t> labels_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::unique_ptr<Share> rest_;
+  tbb::enumerable_thread_specific<Worker> workers_{[this] { return Worker(state_.mesh); }};
+};
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,53 @@
+// Parts of a surface that threads decimate side by side.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "decimation/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+/// Which vertices one of several may remove, all of whose neighbours are of the same part: faces at such
+/// vertices, and the vertices of these faces, nobody else reads or writes. All others are on the seam between
+/// parts, and once there stay there: what the seam's collapses leave next to another part has joined it.
+class Territory {
+ public:
+  static constexpr std::uint8_t kInner = 0x80, kSeam = 0x7f;
+
+  /// Everywhere, and there are no parts.
+  Territory() = default;
+  /// `labels`, for each vertex: its part, and kInner unless it is on the seam. Of the part kSeam everything
+  /// is, while nobody else is at work.
+  Territory(std::vector<std::uint8_t>& labels, std::uint8_t part) : labels_(labels.data()), part_(part) {}
+
+  [[nodiscard]] bool is_part() const { return part_ != kSeam; }
+  /// Of a part.
+  [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (part_ | kInner); }
+
+  /// A vertex has absorbed another, which had this ring.
+  void merge(CollapseMesh& mesh, std::uint32_t gone, std::uint32_t kept,
+             std::span<const std::uint32_t> ring) {
+    if (labels_ == nullptr || is_part()) return;
+    const auto owner = [&](std::uint32_t v) { return labels_[v] & ~kInner; };
+    const auto leave = [&](std::uint32_t v) {
+      labels_[v] &= ~kInner;
+      mesh.set_on_seam(v);
+    };
+    if (((labels_[gone] & labels_[kept]) & kInner) == 0) leave(kept);
+    if (owner(gone) == owner(kept)) return;
+    for (const std::uint32_t r : ring)
+      if (owner(r) != owner(kept) && (labels_[r] & kInner) != 0 && r != mesh.apex()) leave(r);
+  }
+
+ private:
+  std::uint8_t* labels_ = nullptr;
+  std::uint8_t part_ = kSeam;
+};
+
+/// Labels of vertices, for `parts` compact parts of about as many vertices each; a power of two below kSeam.
+/// O(n log parts).
+[[nodiscard]] std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts);
+
+}  // namespace vkmesh::detail
