@@ -99,6 +99,33 @@ AttributeQuadrics::AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_coun
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) add_face(f);
 }
 
+void AttributeQuadrics::keep_changes() {
+  keeps_changes_ = true;
+  changes_.values.resize(attributes_.size());
+  changes_.corners.resize(3 * mesh_.face_count());
+  for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
+    for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
+      changes_.corners[Wedges::source_corner(mesh_, h)] = wedges_.source_corner(wedges_[h]);
+}
+
+void AttributeQuadrics::keep_change(std::uint32_t h, bool moved) {
+  std::array<std::uint32_t, 2> joined{kInvalid, kInvalid};
+  std::size_t count = 0;
+  const auto add = [&](std::uint32_t wedge, std::uint32_t into) {
+    changes_.wedges.push_back({step_, wedges_.source_corner(wedge), wedges_.source_corner(into)});
+    append_values(into, moved, changes_.values);
+  };
+  wedges_.for_each_pair(mesh_, h, [&](std::uint32_t from, std::uint32_t to) {
+    add(from, to);
+    joined[count++] = to;
+  });
+  if (moved)
+    wedges_.for_each_at(mesh_, mesh_.target(h), [&](std::uint32_t w) {
+      if (w != joined[0] && w != joined[1]) add(w, w);
+    });
+  ++step_;
+}
+
 double AttributeQuadrics::value_of(std::size_t attribute, std::uint32_t corner, std::size_t component) const {
   const DecimateAttribute& a = attributes_[attribute];
   const std::size_t value = a.corners.empty() ? corners_[corner] : a.corners[corner];
@@ -263,12 +290,13 @@ void AttributeQuadrics::collapse(std::uint32_t h, const std::array<float, 3>& mo
   merge(plain_[kept], plain_[gone]);
   wedges_.for_each_at(mesh_, kept, [&](std::uint32_t w) { move(w, move_kept); });
   CollapseVertex& vertex = mesh_.vertices[kept];
+  constexpr std::array<float, 3> kSamePlace = {0.0f, 0.0f, 0.0f};
   wedges_.for_each_pair(mesh_, h, [&](std::uint32_t from, std::uint32_t to) {
-    constexpr std::array<float, 3> kSamePlace = {0.0f, 0.0f, 0.0f};
     move(from, move_gone);
     add_difference(to, from, weight_[from], kSamePlace, vertex.a, vertex.b, vertex.c);
     join(to, from, weight_[from], kSamePlace);
   });
+  if (keeps_changes_) keep_change(h, vertex.has(CollapseVertex::kMoved) || move_kept != kSamePlace);
   wedges_.collapse(mesh_, h);
   deviation_[kept] = deviation(kept);
 }
@@ -335,6 +363,28 @@ void AttributeQuadrics::hand_on(std::span<const std::uint32_t> edges, const Seam
   }
 }
 
+void AttributeQuadrics::append_values(std::uint32_t wedge, bool moved,
+                                      std::vector<std::vector<float>>& values) const {
+  const std::size_t n = components_.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Component& c = components_[k];
+    double value = value_of(c.attribute, wedges_.source_corner(wedge), c.index);
+    if (moved)
+      value = std::clamp(c.middle + c.range * static_cast<double>(function_[wedge * n + k].value),
+                         static_cast<double>(c.low), static_cast<double>(c.high));
+    values[c.attribute].push_back(static_cast<float>(value));
+  }
+  for (std::size_t a = 0; moved && a < attributes_.size(); ++a) {
+    if (attributes_[a].kind != AttributeKind::kNormal) continue;
+    const std::span<float> normal(values[a].end() - 3, 3);
+    const double x = normal[0], y = normal[1], z = normal[2], length = std::sqrt(x * x + y * y + z * z);
+    if (!(length > 0)) continue;
+    normal[0] = static_cast<float>(x / length);
+    normal[1] = static_cast<float>(y / length);
+    normal[2] = static_cast<float>(z / length);
+  }
+}
+
 DecimatedAttributes AttributeQuadrics::gather(std::span<const std::uint32_t> faces,
                                               std::span<const std::uint32_t> new_face) const {
   DecimatedAttributes result;
@@ -344,31 +394,12 @@ DecimatedAttributes AttributeQuadrics::gather(std::span<const std::uint32_t> fac
     for (std::uint32_t i = 0; i < 3; ++i)
       result.corners[3 * new_face[mesh_.face(4 * f).source] + i] = 4 * f + i;
   std::vector<std::uint32_t> number(wedges_.count(), kInvalid);  // in order of appearance
-  const std::size_t n = components_.size();
   for (std::uint32_t& corner : result.corners) {
     const std::uint32_t h = corner, w = wedges_[h];
     if (number[w] == kInvalid) {
       number[w] = static_cast<std::uint32_t>(result.source_corner.size());
-      const std::uint32_t source = wedges_.source_corner(w);
-      result.source_corner.push_back(source);
-      const bool moved = mesh_.vertices[mesh_.origin(h)].has(CollapseVertex::kMoved);
-      for (std::size_t k = 0; k < n; ++k) {
-        const Component& c = components_[k];
-        double value = value_of(c.attribute, source, c.index);
-        if (moved)
-          value = std::clamp(c.middle + c.range * static_cast<double>(function_[w * n + k].value),
-                             static_cast<double>(c.low), static_cast<double>(c.high));
-        result.values[c.attribute].push_back(static_cast<float>(value));
-      }
-      for (std::size_t a = 0; moved && a < attributes_.size(); ++a) {
-        if (attributes_[a].kind != AttributeKind::kNormal) continue;
-        const std::span<float> normal(result.values[a].end() - 3, 3);
-        const double x = normal[0], y = normal[1], z = normal[2], length = std::sqrt(x * x + y * y + z * z);
-        if (!(length > 0)) continue;
-        normal[0] = static_cast<float>(x / length);
-        normal[1] = static_cast<float>(y / length);
-        normal[2] = static_cast<float>(z / length);
-      }
+      result.source_corner.push_back(wedges_.source_corner(w));
+      append_values(w, mesh_.vertices[mesh_.origin(h)].has(CollapseVertex::kMoved), result.values);
     }
     corner = number[w];
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <vkmesh/decimation/decimate.h>
@@ -39,6 +40,10 @@ class AttributeQuadrics {
   AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_count, Wedges wedges,
                     std::span<const DecimateAttribute> attributes, std::span<const std::uint32_t> corners,
                     double diagonal, bool apart);
+
+  /// What collapses do from now on is kept, each being a step.
+  void keep_changes();
+  [[nodiscard]] DecimationChanges take_changes() { return std::move(changes_); }
 
   [[nodiscard]] const Wedges& wedges() const { return wedges_; }
 
@@ -92,6 +97,10 @@ class AttributeQuadrics {
   [[nodiscard]] float deviation(std::uint32_t v) const;
   [[nodiscard]] double value_of(std::size_t attribute, std::uint32_t corner, std::size_t component) const;
   void move(std::uint32_t wedge, const std::array<float, 3>& by);
+  /// The collapse of h as a step, with values as they are from then on; the kept vertex has moved, or not.
+  void keep_change(std::uint32_t h, bool moved);
+  /// Of a wedge whose vertex was moved, or not.
+  void append_values(std::uint32_t wedge, bool moved, std::vector<std::vector<float>>& values) const;
   [[nodiscard]] std::array<float, 3> between(std::uint32_t p, std::uint32_t q) const;
 
   /// A linear function: its gradient, and its value at the vertex.
@@ -117,6 +126,9 @@ class AttributeQuadrics {
   std::vector<CollapseVertex> plain_;  // the vertices with their geometric quadrics alone
   std::vector<CollapseVertex> apart_;  // the vertices with the quadrics of attributes alone, for removals
   std::vector<float> deviation_;       // by vertex
+  bool keeps_changes_ = false;
+  std::uint32_t step_ = 0;
+  DecimationChanges changes_;
 };
 
 }  // namespace vkmesh::detail

@@ -308,8 +308,11 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         attributes ? &*attributes : nullptr,
                         criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         options.boundary == DecimateBoundary::kKept};
-  VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
+  if (attributes && options.keep_history) attributes->keep_changes();
+  VKMESH_TRY(Outcome outcome, run(state, options, order, progress));
   BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome, state.attributes);
+  if (attributes) result.changes = attributes->take_changes();
+  result.changes.faces = std::move(outcome.changed_faces);
   if (criteria.watches_distance()) result.distance_bound = criteria.distance(mesh) / frame.scale;
   result.pruned_components = pruned.components;
   result.pruned_faces = pruned.faces;

@@ -45,6 +45,7 @@ struct Outcome {
   Census held{};                     // in the end, where no target was reached
   std::size_t held_by_boundary = 0;  // of those that are locked
   std::vector<Event> events;
+  std::vector<DecimationChanges::Face> changed_faces;  // by removals, if events are kept
 };
 
 struct DecimationState {

@@ -631,6 +631,7 @@ class VertexRemovals {
     if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(faces_);
     const auto faces = mesh_.fill_hole(star.all_edges(), removal.triangles.all(), first_face(star));
     gone.leading = CollapseVertex::kGone | heir;
+    if (state_.keep_events) keep_faces(removal);
     if (state_.keep_events)
       state_.outcome.events.push_back({vertices_[heir].source & CollapseVertex::kSourceMask,
                                        gone.source & CollapseVertex::kSourceMask, vertices_[heir].position,
@@ -652,6 +653,28 @@ class VertexRemovals {
         if (const std::uint32_t v = mesh_.target(h); v != mesh_.apex()) revive(v);
         h = mesh_.around_vertex(h);
       } while (h != vertices_[r].leading);
+    }
+  }
+
+  /// The new faces, which are in the mesh, as part of the step that is next.
+  void keep_faces(const Removal& removal) {
+    const HoleStar& star = *removal.star;
+    const auto step = static_cast<std::uint32_t>(state_.outcome.events.size());
+    std::size_t taken = first_face(star);
+    for (const auto& corners : removal.triangles.all()) {
+      if (corners[2] == star.neighbours()) continue;  // closes the boundary
+      const std::uint32_t h = star.edge[taken % (star.edges - 1)] & ~3u;
+      ++taken;
+      auto& made = state_.outcome.changed_faces.emplace_back();
+      made.step = step;
+      made.face = mesh_.face(h).source;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        made.vertices[i] = vertices_[mesh_.origin(h + i)].source & CollapseVertex::kSourceMask;
+        if constexpr (kAttributes) {
+          const Wedges& wedges = state_.attributes->wedges();
+          made.wedges[i] = wedges.source_corner(wedges[h + i]);
+        }
+      }
     }
   }
 
