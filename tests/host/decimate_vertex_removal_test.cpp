@@ -15,12 +15,13 @@
 #include <vkmesh/vec.h>
 
 #include "decimation/hole.h"
+#include "support/data.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-using detail::HoleBatch;
+using detail::HoleAttributes, detail::HoleBatch;
 
 Decimated run(const IndexedFaceSet& mesh, DecimateOptions options) {
   options.operation = DecimateOperation::kVertexRemoval;
@@ -68,7 +69,21 @@ struct Star {
   };
   std::vector<Plane> planes;
 
+  std::size_t seam = 0;  // the neighbour at its other end, if one runs through the first
+
   [[nodiscard]] std::size_t size() const { return ring.size(); }
+  [[nodiscard]] bool on_curve() const { return !closed || seam > 0; }
+  [[nodiscard]] std::size_t sides() const { return seam > 0 ? 2 : 1; }
+  /// Whether neighbour i stands on that side of the seam.
+  [[nodiscard]] bool has(std::size_t side, std::size_t i) const {
+    return seam == 0 || (side == 0 ? i <= seam : i >= seam || i == 0);
+  }
+  /// On its new edge, where it goes to on a boundary or seam, and how far along it.
+  [[nodiscard]] std::pair<DVec3, double> on_edge() const {
+    const DVec3 &p = ring[0], d = ring[seam > 0 ? seam : size() - 1] - p;
+    const double t = std::clamp(-dot(p, d) / dot(d, d), 0.0, 1.0);
+    return {p + d * t, t};
+  }
   [[nodiscard]] std::size_t faces() const { return closed ? size() : size() - 1; }
   [[nodiscard]] DVec3 face(std::size_t i) const { return cross(ring[i], ring[(i + 1) % size()]); }
   [[nodiscard]] DVec3 up() const {
@@ -131,9 +146,9 @@ double error_of(const Star& star, const Triangulation& triangles, double cos_dev
     margin = std::min({margin, std::fabs(va), std::fabs(vb), std::fabs(vc)});
     if (va > 0 && vb > 0 && vc > 0) {
       const DVec3 below = star.up() * ((va * p[a].z + vb * p[b].z + vc * p[c].z) / (va + vb + vc));
-      if (star.closed) {
+      if (!star.on_curve()) {
         error += star.quadric(below);
-      } else {  // planes through v: where v itself goes is told by the new boundary edge
+      } else {  // planes through v: where v itself goes is told by the new edge
         for (const Star::Plane& plane : star.planes)
           error += plane.weight * dot(plane.normal, below) * dot(plane.normal, below);
       }
@@ -154,17 +169,89 @@ double error_of(const Star& star, const Triangulation& triangles, double cos_dev
       error += weight * apart * apart;
     }
   }
-  if (!star.closed) {
-    const DVec3 &p0 = star.ring[0], d = star.ring[n - 1] - p0;
-    error += star.quadric(p0 + d * std::clamp(-dot(p0, d) / dot(d, d), 0.0, 1.0));
-  }
+  if (star.on_curve()) error += star.quadric(star.on_edge().first);
   return legal ? error : std::numeric_limits<double>::infinity();
 }
 
-void put(const Star& star, std::size_t lane, HoleBatch& batch) {
-  for (std::size_t i = 0; i < star.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      batch.ring[i][static_cast<std::size_t>(k)][lane] = static_cast<float>(star.ring[i][k]);
+/// An attribute at a star, values less that of the vertex on each side.
+struct Attribute {
+  double cost = 1;
+  struct OnSide {
+    std::vector<double> ring;
+    double off = 0;  // of the mean function
+    DVec3 gradient{0.0};
+  };
+  std::array<OnSide, 2> side;
+};
+struct Attributes {
+  std::vector<Attribute> all;
+  std::array<double, 2> weight{};
+  Star left;  // whose planes are what is left for the best values
+};
+
+/// What attributes add to the error of a triangulation that is legal.
+double error_of(const Star& star, const Attributes& attributes, const Triangulation& triangles) {
+  const std::size_t n = star.size();
+  const Seen seen(star.up());
+  std::vector<DVec3> p;
+  for (const DVec3& r : star.ring) p.push_back(seen(r));
+  const DVec3 v{0.0};
+  const auto at = [&](std::size_t side, const DVec3& x, bool is_from_v, auto&& value_of) {
+    double sum = 0;
+    for (const Attribute& a : attributes.all) {
+      const Attribute::OnSide& on = a.side[side];
+      const double off = (is_from_v ? 0 : on.off) + dot(on.gradient, x) - value_of(on.ring);
+      sum += a.cost * off * off;
+    }
+    return attributes.weight[side] * sum;
+  };
+  double error = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const std::size_t side = star.has(0, a) && star.has(0, b) && star.has(0, c) ? 0 : 1;
+    const double va = shadow(v, p[b], p[c]), vb = shadow(v, p[c], p[a]), vc = shadow(v, p[a], p[b]),
+                 all = va + vb + vc;
+    if (va > 0 && vb > 0 && vc > 0) {
+      const DVec3 below = star.up() * ((va * p[a].z + vb * p[b].z + vc * p[c].z) / all);
+      error += at(side, below, star.on_curve(), [&, a = a, b = b, c = c](const std::vector<double>& ring) {
+        return (va * ring[a] + vb * ring[b] + vc * ring[c]) / all;
+      });
+      for (const Star::Plane& plane : attributes.left.planes) {
+        const double d = dot(plane.normal, below) - (star.on_curve() ? 0 : plane.offset);
+        error += plane.weight * d * d;
+      }
+    }
+    if (!(c > a + 1 && !(star.closed && a == 0 && c + 1 == n))) continue;
+    for (std::size_t s = 0; s < n; ++s) {
+      if (s == a || s == c) continue;
+      const DVec3 d = p[c] - p[a];
+      const double det = p[s].x * d.y - p[s].y * d.x;
+      const double t = (p[a].x * d.y - p[a].y * d.x) / det, u = (p[a].x * p[s].y - p[a].y * p[s].x) / det;
+      if (!(t > 0 && t < 1 && u > 0 && u < 1)) continue;
+      double weight = 0;
+      if (star.closed || s + 1 < n) weight += length(star.face(s)) / 4;
+      if (star.closed || s > 0) weight += length(star.face((s + n - 1) % n)) / 4;
+      for (std::size_t of = 0; of < star.sides(); ++of) {
+        if (!star.has(of, a) || !star.has(of, c) || !star.has(of, s)) continue;
+        for (const Attribute& attribute : attributes.all) {
+          const auto& ring = attribute.side[of].ring;
+          const double apart = t * ring[s] - (ring[a] + u * (ring[c] - ring[a]));
+          error += weight * attribute.cost * apart * apart;
+        }
+      }
+    }
+  }
+  if (!star.on_curve()) return error;
+  const auto [x, t] = star.on_edge();
+  const std::size_t end = star.seam > 0 ? star.seam : n - 1;
+  for (std::size_t side = 0; side < star.sides(); ++side)
+    error += at(side, x, false,
+                [&, t = t](const std::vector<double>& ring) { return ring[0] + t * (ring[end] - ring[0]); });
+  return error + attributes.left.quadric(x);
+}
+
+/// The quadric of a star's planes, into a lane.
+template <class Batch>
+void put_quadric(const Star& star, std::size_t lane, Batch& batch) {
   std::array<double, 6> a{};
   std::array<double, 3> b{};
   double c = 0;
@@ -177,7 +264,38 @@ void put(const Star& star, std::size_t lane, HoleBatch& batch) {
   for (std::size_t k = 0; k < 6; ++k) batch.a[k][lane] = static_cast<float>(a[k]);
   for (std::size_t k = 0; k < 3; ++k) batch.b[k][lane] = static_cast<float>(b[k]);
   batch.c[lane] = static_cast<float>(c);
+}
+
+void put(const Star& star, std::size_t lane, HoleBatch& batch) {
+  for (std::size_t i = 0; i < star.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      batch.ring[i][static_cast<std::size_t>(k)][lane] = static_cast<float>(star.ring[i][k]);
+  put_quadric(star, lane, batch);
   batch.closed[lane] = star.closed ? 1.0f : 0.0f;
+}
+
+void put(const Star& star, const Attributes& attributes, std::size_t lane, HoleBatch& batch,
+         HoleAttributes& holes) {
+  put(star, lane, batch);
+  put_quadric(attributes.left, lane, holes);
+  holes.parted[lane] = star.seam > 0 ? 1 : 0;
+  const std::size_t last = star.seam > 0 ? star.seam : star.size() - 1;
+  holes.last[lane] = static_cast<std::int32_t>(last);
+  for (std::size_t b = 1; b < star.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a)
+      batch.barred[HoleBatch::pair(a, b)][lane] =
+          star.seam > 0 && a > 0 && a < last && b > last ? HUGE_VALF : 0.0f;
+  for (std::size_t side = 0; side < 2; ++side) {
+    holes.weight[side][lane] = static_cast<float>(attributes.weight[side]);
+    for (std::size_t k = 0; k < attributes.all.size(); ++k) {
+      const Attribute::OnSide& on = attributes.all[k].side[side];
+      HoleAttributes::OnSide& out = holes.components[k].side[side];
+      out.off[lane] = static_cast<float>(on.off);
+      for (int j = 0; j < 3; ++j)
+        out.gradient[static_cast<std::size_t>(j)][lane] = static_cast<float>(on.gradient[j]);
+      for (std::size_t i = 0; i < star.size(); ++i) out.ring[i][lane] = static_cast<float>(on.ring[i]);
+    }
+  }
 }
 
 Triangulation triangulation_in(const HoleBatch& batch, std::size_t lane, std::size_t first,
@@ -266,6 +384,85 @@ TEST_CASE("decimation: a hole is filled with the best of all triangulations", "[
   CHECK(compared > 3000);
   CHECK(impossible > 100);
   CHECK(compared - impossible > 1500);
+}
+
+TEST_CASE("decimation: attributes take part in which triangulation is the best, on each side of a seam",
+          "[decimate]") {
+  std::mt19937 random(7);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  HoleBatch batch;
+  HoleAttributes holes;
+  constexpr std::array<double, 2> kCosts = {1, 0.3};
+  for (const double cost : kCosts) holes.components.emplace_back().cost = static_cast<float>(cost);
+  std::size_t within = 0, boundary = 0, parted = 0, decided = 0;
+  for (std::size_t n = 3; n <= 7; ++n) {
+    const std::vector<Triangulation> all = all_triangulations(0, n - 1);
+    for (int round = 0; round < (test::kSanitized ? 10 : 60); ++round) {
+      std::vector<Star> stars;
+      std::vector<Attributes> attributes;
+      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+        Star star = random_star(n, random() % 3 != 0, random);
+        if (star.closed && random() % 2 == 0) star.seam = 1 + random() % (n - 1);
+        Attributes at;
+        for (const double cost : kCosts) {
+          at.all.push_back({cost, {}});
+          for (Attribute::OnSide& on : at.all.back().side) {
+            on.off = uniform(-0.2, 0.2);
+            on.gradient = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+            for (std::size_t i = 0; i < n; ++i) on.ring.push_back(uniform(-1, 1));
+          }
+        }
+        at.weight = {uniform(0, 2), uniform(0, 2)};
+        const DVec3 normal(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+        at.left.planes = {{normal, uniform(-0.1, 0.1), uniform(0, 0.5)}};
+        put(star, at, lane, batch, holes);
+        stars.push_back(std::move(star));
+        attributes.push_back(std::move(at));
+      }
+      detail::fill_holes(batch, n, 0.25f, &holes);
+      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+        const Star& star = stars[lane];
+        double margin = 1, least = HUGE_VAL, least_without = HUGE_VAL;
+        const Triangulation* plain = nullptr;
+        const Seen seen(star.up());
+        for (std::size_t i = 0; i < star.faces(); ++i)
+          margin = std::min(margin, shadow(DVec3(0.0), seen(star.ring[i]), seen(star.ring[(i + 1) % n])));
+        for (const Triangulation& triangles : all) {
+          const bool crosses = std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+            return star.seam > 0 && t[0] > 0 && t[0] < star.seam && t[2] > star.seam;
+          });
+          const bool keeps = star.seam == 0 || star.seam == 1 || star.seam + 1 == n ||
+                             std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+                               return t[0] == 0 && (t[1] == star.seam || t[2] == star.seam);
+                             });
+          if (crosses || !keeps) continue;
+          const double without = error_of(star, triangles, 0.25, margin);
+          if (!(without < HUGE_VAL)) continue;
+          least = std::min(least, without + error_of(star, attributes[lane], triangles));
+          if (without < least_without) plain = &triangles;
+          least_without = std::min(least_without, without);
+        }
+        if (margin < 1e-4 || !(least < HUGE_VAL)) continue;
+        INFO(n << " neighbours, closed " << star.closed << ", seam " << star.seam << ", lane " << lane);
+        const double rounding = 400.0 / (1 << 24),
+                     by_length = 1e-7 * star.area() * 9 * static_cast<double>(n);
+        const Triangulation found = triangulation_in(batch, lane, 0, n - 1);
+        CHECK(batch.error[lane] == Approx(error_of(star, found, 0.25, margin)).margin(rounding));
+        CHECK(holes.error[lane] == Approx(error_of(star, attributes[lane], found)).margin(rounding));
+        CHECK(batch.error[lane] + holes.error[lane] >= least - rounding);
+        CHECK(batch.error[lane] + holes.error[lane] <= least + rounding + by_length);
+        ++(star.seam > 0 ? parted : star.closed ? within : boundary);
+        if (least_without + error_of(star, attributes[lane], *plain) > 1.01 * least) ++decided;
+      }
+    }
+  }
+  const std::size_t enough = test::kSanitized ? 30 : 300;
+  CHECK(within > enough);
+  CHECK(boundary > enough);
+  CHECK(parted > enough);
+  CHECK(decided > enough);
 }
 
 TEST_CASE("decimation: an edge that is barred is not made, and a lane knows nothing of its neighbours",
