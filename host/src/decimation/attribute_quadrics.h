@@ -89,7 +89,7 @@ class AttributeQuadrics {
   void add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q,
                       const std::array<float, 3>& d, std::array<float, 6>& a, std::array<float, 3>& b,
                       float& c) const;
-  /// The second, with this weight, becomes part of the first, which lies at -d from it.
+  /// The second, with this weight and at the place of the first plus d, becomes part of it.
   void join(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q, const std::array<float, 3>& d);
   /// Sum of cost (function(x) - value)², times the weight of `wedge`; the value of `at`.
   [[nodiscard]] float deviation(std::uint32_t wedge, const std::array<float, 3>& x, std::uint32_t at) const;

@@ -340,9 +340,11 @@ void find_curves(const HoleBatch& batch, const HoleAttributes& attributes, Vecto
 // The mean functions along the normal, and what counts on the new edge of a boundary or seam.
 void find_means(const HoleBatch& batch, const Curve& curve, const Work& w, HoleAttributes& attributes) {
   for (auto& component : attributes.components)
-    for (auto& side : component.side) VKMESH_LANES(l)
-  side.along[l] =
-      w.up[0][l] * side.gradient[0][l] + w.up[1][l] * side.gradient[1][l] + w.up[2][l] * side.gradient[2][l];
+    for (auto& [off, gradient, ring, along] : component.side) {
+      VKMESH_LANES(l) {
+        along[l] = w.up[0][l] * gradient[0][l] + w.up[1][l] * gradient[1][l] + w.up[2][l] * gradient[2][l];
+      }
+    }
   const auto& a = attributes.a;
   const auto& b = attributes.b;
   for (std::size_t l = 0; l < kLanes; ++l) {
