@@ -196,30 +196,22 @@ double error_of(const Star& star, const Attributes& attributes, const Triangulat
   std::vector<DVec3> p;
   for (const DVec3& r : star.ring) p.push_back(seen(r));
   const DVec3 v{0.0};
-  const auto at = [&](std::size_t side, const DVec3& x, bool is_from_v, auto&& value_of) {
-    double sum = 0;
-    for (const Attribute& a : attributes.all) {
-      const Attribute::OnSide& on = a.side[side];
-      const double off = (is_from_v ? 0 : on.off) + dot(on.gradient, x) - value_of(on.ring);
-      sum += a.cost * off * off;
-    }
-    return attributes.weight[side] * sum;
+  // Where neighbour i takes over what v stands for.
+  const auto taken_by = [&](std::size_t i) {
+    double sum = attributes.left.quadric(star.ring[i]);
+    for (const Attribute& a : attributes.all)
+      for (std::size_t side = 0; side < star.sides(); ++side) {
+        const Attribute::OnSide& on = a.side[side];
+        const double off = on.off + dot(on.gradient, star.ring[i]) - on.ring[i];
+        sum += attributes.weight[side] * a.cost * off * off;
+      }
+    return sum;
   };
   double error = 0;
   for (const auto& [a, b, c] : triangles) {
-    const std::size_t side = star.has(0, a) && star.has(0, b) && star.has(0, c) ? 0 : 1;
-    const double va = shadow(v, p[b], p[c]), vb = shadow(v, p[c], p[a]), vc = shadow(v, p[a], p[b]),
-                 all = va + vb + vc;
-    if (va > 0 && vb > 0 && vc > 0) {
-      const DVec3 below = star.up() * ((va * p[a].z + vb * p[b].z + vc * p[c].z) / all);
-      error += at(side, below, star.on_curve(), [&, a = a, b = b, c = c](const std::vector<double>& ring) {
-        return (va * ring[a] + vb * ring[b] + vc * ring[c]) / all;
-      });
-      for (const Star::Plane& plane : attributes.left.planes) {
-        const double d = dot(plane.normal, below) - (star.on_curve() ? 0 : plane.offset);
-        error += plane.weight * d * d;
-      }
-    }
+    const double va = shadow(v, p[b], p[c]), vb = shadow(v, p[c], p[a]), vc = shadow(v, p[a], p[b]);
+    if (!star.on_curve() && va > 0 && vb > 0 && vc > 0)
+      error += (va * taken_by(a) + vb * taken_by(b) + vc * taken_by(c)) / (va + vb + vc);
     if (!(c > a + 1 && !(star.closed && a == 0 && c + 1 == n))) continue;
     for (std::size_t s = 0; s < n; ++s) {
       if (s == a || s == c) continue;
@@ -241,12 +233,8 @@ double error_of(const Star& star, const Attributes& attributes, const Triangulat
     }
   }
   if (!star.on_curve()) return error;
-  const auto [x, t] = star.on_edge();
-  const std::size_t end = star.seam > 0 ? star.seam : n - 1;
-  for (std::size_t side = 0; side < star.sides(); ++side)
-    error += at(side, x, false,
-                [&, t = t](const std::vector<double>& ring) { return ring[0] + t * (ring[end] - ring[0]); });
-  return error + attributes.left.quadric(x);
+  const double t = star.on_edge().second;
+  return error + (1 - t) * taken_by(0) + t * taken_by(star.seam > 0 ? star.seam : n - 1);
 }
 
 /// The quadric of a star's planes, into a lane.

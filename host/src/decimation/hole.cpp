@@ -337,37 +337,44 @@ void find_curves(const HoleBatch& batch, const HoleAttributes& attributes, Vecto
   }
 }
 
-// The mean functions along the normal, and what counts on the new edge of a boundary or seam.
-void find_means(const HoleBatch& batch, const Curve& curve, const Work& w, HoleAttributes& attributes) {
-  for (auto& component : attributes.components)
-    for (auto& [off, gradient, ring, along] : component.side) {
-      VKMESH_LANES(l) {
-        along[l] = w.up[0][l] * gradient[0][l] + w.up[1][l] * gradient[1][l] + w.up[2][l] * gradient[2][l];
-      }
-    }
+// What it costs where a neighbour takes over all that v stands for; on the new edge of a boundary or seam,
+// where both ends take their shares.
+void find_heirs(const HoleBatch& batch, const Curve& curve, const Work& w, HoleAttributes& attributes) {
   const auto& a = attributes.a;
   const auto& b = attributes.b;
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    attributes.error[l] = 0;
-    if (curve.is_none[l] > 0) continue;
-    std::array<float, 3> x;
-    const float t = w.toward[l];
-    for (std::size_t k = 0; k < 3; ++k)
-      x[k] = (batch.ring[0][k][l] - batch.v[k][l]) + t * (curve.to[k][l] - batch.ring[0][k][l]);
-    float sum = attributes.c[l] + x[0] * (a[0][l] * x[0] + 2 * (a[1][l] * x[1] + a[2][l] * x[2] + b[0][l])) +
-                x[1] * (a[3][l] * x[1] + 2 * (a[4][l] * x[2] + b[1][l])) +
-                x[2] * (a[5][l] * x[2] + 2 * b[2][l]);
-    sum = sum > 0 ? sum : 0.0f;
-    const auto last = static_cast<std::size_t>(attributes.last[l]);
-    for (std::size_t side = 0; side < (attributes.parted[l] != 0 ? 2u : 1u); ++side)
-      for (const auto& component : attributes.components) {
-        const HoleAttributes::OnSide& on = component.side[side];
-        const float value = on.ring[0][l] + t * (on.ring[last][l] - on.ring[0][l]);
-        const float off = (on.off[l] - value) +
-                          (x[0] * on.gradient[0][l] + x[1] * on.gradient[1][l] + x[2] * on.gradient[2][l]);
-        sum += attributes.weight[side][l] * component.cost * off * off;
+  for (std::size_t i = 0; i < w.n; ++i) {
+    alignas(64) Vectors at;
+    auto& [one, other] = attributes.heir[i];
+    VKMESH_LANES(l) {
+      const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
+                  z = batch.ring[i][2][l] - batch.v[2][l];
+      const float left = attributes.c[l] + x * (a[0][l] * x + 2 * (a[1][l] * y + a[2][l] * z + b[0][l])) +
+                         y * (a[3][l] * y + 2 * (a[4][l] * z + b[1][l])) + z * (a[5][l] * z + 2 * b[2][l]);
+      at[0][l] = x;
+      at[1][l] = y;
+      at[2][l] = z;
+      one[l] = left > 0 ? left : 0.0f;
+      other[l] = 0;
+    }
+    for (const auto& component : attributes.components)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto& [off, gradient, ring] = component.side[side];
+        Lanes& sum = attributes.heir[i][side];
+        VKMESH_LANES(l) {
+          const float apart = (off[l] - ring[i][l]) + (gradient[0][l] * at[0][l] + gradient[1][l] * at[1][l] +
+                                                       gradient[2][l] * at[2][l]);
+          sum[l] += component.cost * attributes.weight[side][l] * (apart * apart);
+        }
       }
-    attributes.error[l] = sum;
+  }
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const auto all = [&](std::size_t i) {
+      const auto& [one, other] = attributes.heir[i];
+      return one[l] + (attributes.parted[l] != 0 ? other[l] : 0.0f);
+    };
+    const float t = w.toward[l];
+    const auto last = static_cast<std::size_t>(attributes.last[l]);
+    attributes.error[l] = curve.is_none[l] > 0 ? 0.0f : (1 - t) * all(0) + t * all(last);
   }
 }
 
@@ -378,16 +385,6 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
     attributes.inside[ij].fill(0);
     attributes.outside[ij].fill(0);
   }
-  alignas(64) Lanes left0, left1, left2;
-  VKMESH_LANES(l) {
-    const float x = w.up[0][l], y = w.up[1][l], z = w.up[2][l];
-    const auto& a = attributes.a;
-    const auto& b = attributes.b;
-    left0[l] = curve.is_none[l] * attributes.c[l];
-    left1[l] = curve.is_none[l] * 2 * (x * b[0][l] + y * b[1][l] + z * b[2][l]);
-    left2[l] = x * (a[0][l] * x + 2 * (a[1][l] * y + a[2][l] * z)) + y * (a[3][l] * y + 2 * a[4][l] * z) +
-               a[5][l] * z * z;
-  }
   std::size_t abc = 0;
   for (std::size_t c = 2; c < n; ++c)
     for (std::size_t b = 1; b < c; ++b)
@@ -395,15 +392,11 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
         const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c);
         const auto ia = static_cast<std::int32_t>(a), ib = static_cast<std::int32_t>(b),
                    ic = static_cast<std::int32_t>(c);
-        alignas(64) Lanes whole, rise, point{}, crossing{}, counts;
+        alignas(64) Lanes whole, crossing{}, counts;
         alignas(64) Flags on_first;
         VKMESH_LANES(l) {
-          const float det = w.ring[a][0][l] * w.cross[bc][0][l] + w.ring[a][1][l] * w.cross[bc][1][l] +
-                            w.ring[a][2][l] * w.cross[bc][2][l];
           const float sum = w.ahead[ab][l] + w.ahead[bc][l] + w.behind[ac][l];
-          const float height = sum > 0 ? det / sum : 0.0f;
           whole[l] = sum > 0 ? sum : 1.0f;
-          rise[l] = height * height > w.rounding2[l] ? height / w.scale[l] : 0.0f;
           // No triangle across the seam is made, and what it says of edges is no matter of either side.
           const std::int32_t last = attributes.last[l];
           on_first[l] = ic <= last;
@@ -418,20 +411,17 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
                         at_c = is_one ? one.ring[c][l] : other.ring[c][l];
             const float apart =
                 (batch.left[bc][l] * at_a - batch.left[ac][l] * at_b + batch.left[ab][l] * at_c) / whole[l];
-            const float mean = curve.is_none[l] * (is_one ? one.off[l] : other.off[l]) +
-                               rise[l] * (is_one ? one.along[l] : other.along[l]);
             crossing[l] += component.cost * apart * apart;
-            point[l] += component.cost * (mean - apart) * (mean - apart);
           }
         }
         const bool last_is_side = a == 0 && c + 1 == n;
+        const Lanes &heir_a = attributes.heir[a][0], &heir_b = attributes.heir[b][0],
+                    &heir_c = attributes.heir[c][0];
         VKMESH_LANES(l) {
           const float x1 = batch.left[ab][l], x2 = batch.left[bc][l], x3 = -batch.left[ac][l];
           const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (last_is_side & (x3 >= 0)));
-          const float left = left0[l] + rise[l] * (left1[l] + rise[l] * left2[l]);
-          const float weight = on_first[l] != 0 ? attributes.weight[0][l] : attributes.weight[1][l];
-          const float value = counts[l] * (weight * point[l] + (left > 0 ? left : 0.0f));
-          const float at_v = holds ? value : 0.0f;
+          const float taken = (x2 * heir_a[l] + x3 * heir_b[l] + x1 * heir_c[l]) / whole[l];
+          const float at_v = holds & (curve.is_none[l] > 0) ? taken : 0.0f;
           attributes.at_v[abc][l] = at_v;
           w.total[abc][l] += at_v;
           const float each = counts[l] * crossing[l] * (w.scale[l] * w.scale[l]);
@@ -562,7 +552,7 @@ VKMESH_FLAT_CLONES void fill_holes(HoleBatch& batch, std::size_t neighbours, flo
     find_curves(batch, *attributes, to, is_none);
     const Curve curve{to, is_none};
     find_quadric(batch, curve, w);
-    find_means(batch, curve, w, *attributes);
+    find_heirs(batch, curve, w, *attributes);
     judge_all(batch, w);
     if (batch.shape > 0) add_shapes(batch, w);
     judge_attributes(batch, curve, w, *attributes);

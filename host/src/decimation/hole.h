@@ -27,6 +27,14 @@ namespace vkmesh::detail {
 /// triangle holds v, or one's edge of v crosses the new edge of the others. Either way the surfaces lie
 /// det(a, b, c) / Σ max(0, X) apart there, where X are twice the signed areas, seen along the normal, of the
 /// three triangles with v: nothing but products of neighbours is needed.
+///
+/// Attributes count as heights do where old and new edges cross: the squared difference of the values of both
+/// surfaces. What v stands for is taken over by the corners of the triangle below it, each its barycentric
+/// share, and counts there: its mean functions against the values of the corners, with the weight of its
+/// wedge, and what is left of their quadrics (see AttributeQuadrics). Where all goes to one corner, that is
+/// what a collapse into it costs. Where a seam runs through v, the new edge between its ends is made, and v
+/// goes to the nearest point of it, whose ends take over, as a vertex of the boundary does; each side has
+/// values and mean functions of its own, and is compared with itself alone.
 struct HoleBatch {
   static constexpr std::size_t kLanes = 16;
   static constexpr std::size_t kMost = 16;  // neighbours
@@ -81,7 +89,6 @@ struct HoleAttributes {
     alignas(64) Lanes off{};  // of the mean function at v
     alignas(64) std::array<Lanes, 3> gradient{};
     alignas(64) std::array<Lanes, kMost> ring{};  // of neighbours
-    alignas(64) Lanes along{};                    // the normal: found on the way
   };
   struct Component {
     float cost;
@@ -102,7 +109,9 @@ struct HoleAttributes {
   /// What they add to the error, which is without.
   alignas(64) Lanes error{};
 
-  // Of each triangle, and of each new edge where v lies left of it, right of it, and what counts.
+  // Where a neighbour takes all over, on each side; of each triangle; of each new edge where v lies left of
+  // it, right of it, and what counts.
+  alignas(64) std::array<std::array<Lanes, 2>, kMost> heir{};
   static constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
   alignas(64) std::array<Lanes, kTriples> at_v{};
   alignas(64) std::array<Lanes, HoleBatch::kPairs> inside{}, outside{}, edge{};

@@ -289,15 +289,14 @@ using Decimated = BasicDecimated<Vec3>;
 /// the boundary form, or leaves a chart between them without a face. Vertices where seams end, meet or reach
 /// the boundary are locked.
 ///
-/// Of a vertex that is removed, attributes count as the surface does, wherever the old triangles and the new
-/// ones meet when seen along the normal: at the point that the vertex goes to, what it stands for differs
-/// from what the new triangle has there; where old and new edges cross, so do the values of both. The best
-/// triangulation is the best for all of it. A vertex of a seam goes along the seam: to the nearest point of
-/// the edge that joins its two neighbours there, which is made and becomes the seam, while each side is
-/// filled for itself, with its own values, and counts for itself. No value is made that the input does not
-/// have, and each corner of a new face has that of its vertex on its side. The corners of the triangle below,
-/// or the ends of the new seam edge, get shares of what the vertex stood for, in their wedges on its side. No
-/// removal is legal that takes the last face of a chart or the last vertex that a seam differs at.
+/// Of a vertex that is removed, attributes count where old and new edges cross when seen along the normal: by
+/// the values of both; and at the corners of the triangle below it, which take over what it stands for, each
+/// its share: by what their values differ from that, as in a collapse into them. The best triangulation is
+/// the best for all of it. A vertex of a seam goes along the seam: to the nearest point of the edge that
+/// joins its two neighbours there, which is made and becomes the seam, while each side is filled for itself,
+/// with its own values, and counts for itself; the ends of that edge take over. No value is made that the
+/// input does not have, and each corner of a new face has that of its vertex on its side. No removal is legal
+/// that takes the last face of a chart or the last vertex that a seam differs at.
 ///
 /// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
 /// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
