@@ -126,8 +126,6 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
     return fail(ErrorCode::kUsage, "a half-edge collapse ends in an endpoint: leave --placement out");
   if (options.operation == "vertex-removal" && options.placement != "optimal")
     return fail(ErrorCode::kUsage, "vertex removal moves no points: leave --placement out");
-  if (options.operation == "vertex-removal" && !options.attributes.empty())
-    return fail(ErrorCode::kUsage, "vertex removal takes no attributes: leave --attribute out");
   const bool points_stay = options.operation != "edge-collapse" || options.placement == "endpoint";
   if (options.index_only && !points_stay)
     return fail(ErrorCode::kUsage,
@@ -145,8 +143,7 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   VKMESH_TRY(decimation.criteria, criteria.criteria());
   if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
   VKMESH_TRY(const SimplifyAttributes attributes,
-             SimplifyAttributes::of(job, mesh, options.attributes, points_stay,
-                                    options.operation == "vertex-removal"));
+             SimplifyAttributes::of(job, mesh, options.attributes, points_stay));
   attributes.add_to(decimation);
   // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
   std::vector<Vec3> points = std::move(mesh.points);

@@ -61,8 +61,7 @@ Result<Weights> weights_by_name(const std::vector<std::string>& given) {
 }  // namespace
 
 Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh,
-                                                  const std::vector<std::string>& given, bool vertices_stay,
-                                                  bool no_corners) {
+                                                  const std::vector<std::string>& given, bool vertices_stay) {
   VKMESH_TRY(Weights weights, weights_by_name(given));
   std::optional<double> all;
   if (const auto it = weights.find("all"); it != weights.end()) {
@@ -96,11 +95,10 @@ Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh
   for (Channel& channel : mesh.corner_channels) {
     std::optional<double> weight = weight_of(channel);
     if (!weight && can_be_mixed(channel) && channel.name != "normal") weight = kDefaultWeight;
-    if (!weight || no_corners) {
+    if (!weight) {
       job.note("the attribute " + channel.name + " of corners was left out" +
-               (no_corners              ? ": vertex removal keeps none"
-                : can_be_mixed(channel) ? ": --attribute " + channel.name + " keeps it, and its seams"
-                                        : ": its values can not be mixed"));
+               (can_be_mixed(channel) ? ": --attribute " + channel.name + " keeps it, and its seams"
+                                      : ": its values can not be mixed"));
       continue;
     }
     result.parts_.push_back({result.corner_channels_.size(), true, *weight, floats_of(channel)});

@@ -18,10 +18,9 @@ class SimplifyAttributes {
  public:
   /// What corners have takes part unless it is normals, and what `weights` names ("NAME=WEIGHT"; "all" for
   /// each). Takes the channels out of the mesh, whose corners are those of triangles. `vertices_stay`: points
-  /// are not moved; `no_corners`: values of corners can not be kept.
+  /// are not moved.
   static Result<SimplifyAttributes> of(Job& job, IndexedFaceSet& mesh,
-                                       const std::vector<std::string>& weights, bool vertices_stay,
-                                       bool no_corners);
+                                       const std::vector<std::string>& weights, bool vertices_stay);
 
   /// Sets what decimate() is to know; valid as long as this is.
   void add_to(DecimateOptions& options) const;

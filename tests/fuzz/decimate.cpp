@@ -62,7 +62,7 @@ std::vector<std::uint32_t> some_of(Bytes& bytes, std::size_t count) {
 template <class Point>
 void add_attributes(Bytes& bytes, Input<Point>& input, DecimateOptions& options) {
   const std::uint8_t how = bytes.next();
-  if (how % 4 != 0 || options.operation == DecimateOperation::kVertexRemoval) return;
+  if (how % 4 != 0) return;
   std::mt19937 random(bytes.next());
   const std::size_t corners = input.corners.size(), sides = 1 + how / 4 % 3;
   // Faces are on a side by where one of their corners is, so that seams are curves as well as dots.
@@ -296,8 +296,56 @@ void require_attributes(const BasicDecimated<Point>& result, const Input<Point>&
     for (std::size_t k = 0; k < n; ++k) {
       const float value = after.values[0][n * after.corners[c] + k];
       require(std::isfinite(value), "values are finite");
-      if (options.operation == DecimateOperation::kHalfEdgeCollapse && unmoved(v))
+      if (options.operation != DecimateOperation::kEdgeCollapse && unmoved(v))
         require(value == input.values[n * input.value_of_corner[from] + k], "values are kept");
+    }
+  }
+}
+
+/// The history, done again, gives the same corners, with the same values.
+template <class Point>
+void require_changes(const BasicDecimated<Point>& result, const Input<Point>& input,
+                     const DecimateOptions& options) {
+  const DecimationChanges& changes = result.changes;
+  const bool any = !options.attributes.empty() || !options.corner_groups.empty();
+  require(changes.corners.size() == (any ? input.corners.size() : 0), "each corner has a wedge at first");
+  std::vector<std::uint32_t> corners = input.corners, wedges = changes.corners;
+  std::vector<bool> there(corners.size() / 3, true);
+  const std::size_t n = options.attributes.empty() ? 0 : options.attributes[0].components;
+  std::map<std::uint32_t, std::size_t> changed;  // by wedge where its values are now
+  auto face = changes.faces.begin();
+  auto wedge = changes.wedges.begin();
+  for (std::uint32_t step = 0; step < result.history.size(); ++step) {
+    const Collapse<Point>& c = result.history[step];
+    for (const std::uint32_t f : c.faces)
+      if (f != kInvalid) there[f] = false;
+    std::replace(corners.begin(), corners.end(), c.removed, c.kept);
+    for (; wedge != changes.wedges.end() && wedge->step == step; ++wedge) {
+      std::replace(wedges.begin(), wedges.end(), wedge->wedge, wedge->into);
+      changed[wedge->into] = static_cast<std::size_t>(wedge - changes.wedges.begin());
+    }
+    for (; face != changes.faces.end() && face->step == step; ++face) {
+      require(there[face->face], "faces that change are there");
+      std::copy(face->vertices.begin(), face->vertices.end(), corners.begin() + 3 * face->face);
+      if (any) std::copy(face->wedges.begin(), face->wedges.end(), wedges.begin() + 3 * face->face);
+    }
+  }
+  require(face == changes.faces.end() && wedge == changes.wedges.end(), "changes are in order");
+  for (std::size_t f = 0; f < result.mesh.face_count(); ++f) {
+    const std::size_t from = result.source_face[f];
+    require(there[from], "the history and the faces agree");
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t v = result.mesh.origins()[3 * f + i];
+      require(corners[3 * from + i] == result.source_vertex[v], "the history and the corners agree");
+      if (!any) continue;
+      const std::uint32_t w = result.attributes.corners[3 * f + i], was = wedges[3 * from + i];
+      require(result.attributes.source_corner[w] == was, "the history and the wedges agree");
+      const auto at = changed.find(was);
+      for (std::size_t k = 0; k < n; ++k)
+        require(result.attributes.values[0][n * w + k] ==
+                    (at != changed.end() ? changes.values[0][n * at->second + k]
+                                         : input.values[n * input.value_of_corner[was] + k]),
+                "the history and the values agree");
     }
   }
 }
@@ -414,6 +462,7 @@ void require_sound(const BasicDecimated<Point>& result, const Input<Point>& inpu
   require_same_topology(result, input);
   require_locks(result, input, options);
   require_history(result, input);
+  require_changes(result, input, options);
   require_stop(result, input, options);
   require_no_flips(result, input);
   require_attributes(result, input, options);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -18,12 +19,14 @@
 #include <vkmesh/decimation/decimate_index_buffer.h>
 
 #include "decimate_support.h"
+#include "decimation/collapse_order.h"
+#include "support/data.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-using test::half_edges, test::run;
+using test::half_edges, test::run, test::ways;
 
 /// A mesh with one attribute, whose values its corners name.
 struct Textured {
@@ -36,15 +39,6 @@ struct Textured {
     return {components, values, corners, weight, AttributeKind::kPlain};
   }
 };
-
-/// Each way that takes attributes.
-std::vector<DecimateOptions> ways() {
-  std::vector<DecimateOptions> all(4);
-  all[1].placement = CollapsePlacement::kMidpoint;
-  all[2].placement = CollapsePlacement::kEndpoint;
-  all[3].operation = DecimateOperation::kHalfEdgeCollapse;
-  return all;
-}
 
 std::vector<std::uint32_t> corners_of(const Decimated& d) {
   return {d.mesh.origins().begin(), d.mesh.origins().end()};
@@ -180,9 +174,11 @@ TEST_CASE("Decimation of a plane with a linear attribute loses nothing", "[decim
   DecimateOptions options;
   options.max_error = 1e-4;
   options.attributes = {{2, uv, {}, 1.0, AttributeKind::kPlain}};
-  for (const bool half_edge : {false, true}) {
-    CAPTURE(half_edge);
-    options.operation = half_edge ? DecimateOperation::kHalfEdgeCollapse : DecimateOperation::kEdgeCollapse;
+  for (const DecimateOperation operation :
+       {DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse,
+        DecimateOperation::kVertexRemoval}) {
+    CAPTURE(static_cast<int>(operation));
+    options.operation = operation;
     const Decimated d = run(mesh, options);
     CHECK(d.mesh.face_count() == 2);
     CHECK(d.error < 1e-6);
@@ -247,10 +243,11 @@ TEST_CASE("Triangles go where an attribute is curved", "[decimate]") {
     return x < 20 ? 0.0 : (x - 20) * (x - 20) * (2 + std::cos(y / 8)) / 1200;
   };
   const auto step = [](double x, double y) { return x + 0.5 * y < 30 ? 0.0 : 1.0; };
-  const auto both = [&](auto&& f) {
+  const auto both = [&](auto&& f, DecimateOperation operation) {
     std::vector<float> values;
     for (const Vec3& p : mesh.points) values.push_back(static_cast<float>(f(p.x, p.y)));
     DecimateOptions options;
+    options.operation = operation;
     options.target_faces = 120;
     options.attributes = {{1, values, {}, 0.0, AttributeKind::kPlain}};
     const Decimated without = run(mesh, options);
@@ -263,8 +260,10 @@ TEST_CASE("Triangles go where an attribute is curved", "[decimate]") {
     CHECK(error < 0.5 * other);
     return with;
   };
-  const Decimated curved = both(colour);
-  both(step);
+  const Decimated curved = both(colour, DecimateOperation::kEdgeCollapse);
+  both(step, DecimateOperation::kEdgeCollapse);
+  both(colour, DecimateOperation::kVertexRemoval);
+  both(step, DecimateOperation::kVertexRemoval);
   std::size_t flat = 0;
   for (std::size_t face = 0; face < curved.mesh.face_count(); ++face) {
     float x = 0;
@@ -335,6 +334,27 @@ TEST_CASE("Charts keep their seams whatever is left of them", "[decimate]") {
   CHECK(rejected > 0);
 }
 
+/// For each face the chart, those about random points.
+std::vector<std::uint32_t> random_charts(const IndexedFaceSet& mesh, std::size_t charts,
+                                         std::mt19937& random) {
+  std::vector<Vec3> middle;
+  for (std::size_t i = 0; i < charts; ++i) middle.push_back(mesh.points[random() % mesh.points.size()]);
+  std::vector<std::uint32_t> chart;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    const Vec3 p = mesh.points[face[0]] + mesh.points[face[1]] + mesh.points[face[2]];
+    const auto distance = [&](const Vec3& q) {
+      const Vec3 d = p - 3.0f * q;
+      return d.x * d.x + d.y * d.y + d.z * d.z;
+    };
+    const auto nearest = std::min_element(middle.begin(), middle.end(), [&](const Vec3& a, const Vec3& b) {
+      return distance(a) < distance(b);
+    });
+    chart.push_back(static_cast<std::uint32_t>(nearest - middle.begin()));
+  }
+  return chart;
+}
+
 TEST_CASE("Any charts stay, whatever order collapses come in", "[decimate]") {
   // Nothing has a cost in a plane: only the rules hold the seams.
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
@@ -343,22 +363,9 @@ TEST_CASE("Any charts stay, whatever order collapses come in", "[decimate]") {
     t.mesh = seed % 3 == 0 ? test::icosphere(3) : test::grid(18, 15);
     t.components = 1;
     const std::size_t charts = 2 + seed;
-    std::vector<Vec3> middle;
-    for (std::size_t i = 0; i < charts; ++i) middle.push_back(t.mesh.points[random() % t.mesh.points.size()]);
+    for (const std::uint32_t chart : random_charts(t.mesh, charts, random))
+      t.corners.insert(t.corners.end(), 3, chart);
     for (std::size_t i = 0; i < charts; ++i) t.values.push_back(static_cast<float>(i));
-    for (std::size_t f = 0; f < t.mesh.face_count(); ++f) {
-      const auto face = t.mesh.face(f);
-      const Vec3 p = t.mesh.points[face[0]] + t.mesh.points[face[1]] + t.mesh.points[face[2]];
-      const auto distance = [&](const Vec3& q) {
-        const Vec3 d = p - 3.0f * q;
-        return d.x * d.x + d.y * d.y + d.z * d.z;
-      };
-      const auto nearest =
-          std::min_element(middle.begin(), middle.end(),
-                           [&](const Vec3& a, const Vec3& b) { return distance(a) < distance(b); }) -
-          middle.begin();
-      t.corners.insert(t.corners.end(), 3, static_cast<std::uint32_t>(nearest));
-    }
     for (DecimateOptions options : ways()) {
       CAPTURE(seed, static_cast<int>(options.operation), static_cast<int>(options.placement));
       options.target_faces = 0;
@@ -375,6 +382,135 @@ TEST_CASE("Any charts stay, whatever order collapses come in", "[decimate]") {
         CHECK(std::fabs(d.attributes.values[0][d.attributes.corners[c]] -
                         static_cast<float>(t.corners[3 * d.source_face[c / 3]])) < 4e-6f);
     }
+  }
+}
+
+/// Charts with values of their own at each vertex.
+Textured with_random_charts(IndexedFaceSet mesh, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  Textured t;
+  t.mesh = std::move(mesh);
+  const std::vector<std::uint32_t> chart = random_charts(t.mesh, 2 + seed % 4, random);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> value;
+  for (std::size_t c = 0; c < t.mesh.corners.size(); ++c) {
+    const auto next = static_cast<std::uint32_t>(t.values.size() / 2);
+    const auto [place, is_new] = value.try_emplace({t.mesh.corners[c], chart[c / 3]}, next);
+    if (is_new) {
+      const Vec3 p = t.mesh.points[t.mesh.corners[c]];
+      t.values.insert(t.values.end(), {p.x * p.y + static_cast<float>(chart[c / 3]), p.z});
+    }
+    t.corners.push_back(place->second);
+  }
+  return t;
+}
+
+TEST_CASE("Each removal of a vertex takes at most one of a seam, whose neighbours there it joins",
+          "[decimate]") {
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::size_t on_seams = 0, elsewhere = 0;
+  for (std::uint32_t seed = 0; seed < (test::kSanitized ? 3u : 12u); ++seed) {
+    IndexedFaceSet shape = seed % 3 == 0   ? test::icosphere(2)
+                           : seed % 3 == 1 ? test::grid(10, 9)
+                                           : test::torus(12, 9);
+    test::jitter(shape, 0.02f, seed);
+    const Textured t = with_random_charts(shape, seed);
+    DecimateOptions options = ways()[4];
+    options.max_normal_deviation = 2.0;
+    options.attributes = {t.attribute(0.1)};
+    std::set<Edge> before;
+    std::set<std::uint32_t> left_before;
+    for (std::size_t left = t.mesh.points.size();; --left) {
+      options.target_vertices = left;
+      const Decimated d = run(t.mesh, options);
+      if (d.mesh.vertex_count() > left) break;
+      const auto& after = d.attributes.corners;
+      const std::span<const std::uint32_t> of = d.mesh.origins();
+      std::set<Edge> seams;
+      d.mesh.for_each_edge([&](HalfEdgeId h) {
+        if (d.mesh.is_boundary(h)) return;
+        const std::uint32_t g = h.index, u = d.mesh.twin(h).index;
+        const std::uint32_t to_g = d.mesh.next(h).index, to_u = d.mesh.next(HalfEdgeId(u)).index;
+        if (after[g] == after[to_u] && after[to_g] == after[u]) return;
+        seams.insert(std::minmax(d.source_vertex[of[g]], d.source_vertex[of[to_g]]));
+      });
+      const std::set<std::uint32_t> still(d.source_vertex.begin(), d.source_vertex.end());
+      if (!left_before.empty()) {
+        std::vector<std::uint32_t> gone;
+        std::set_difference(left_before.begin(), left_before.end(), still.begin(), still.end(),
+                            std::back_inserter(gone));
+        REQUIRE(gone.size() == 1);
+        std::vector<std::uint32_t> joined;
+        std::set<Edge> expected;
+        for (const Edge& e : before) {
+          if (e.first == gone[0] || e.second == gone[0])
+            joined.push_back(e.first == gone[0] ? e.second : e.first);
+          else
+            expected.insert(e);
+        }
+        if (!joined.empty()) {
+          REQUIRE(joined.size() == 2);
+          CHECK(expected.insert(std::minmax(joined[0], joined[1])).second);
+        }
+        ++(joined.empty() ? elsewhere : on_seams);
+        CHECK(seams == expected);
+      }
+      before = std::move(seams);
+      left_before = still;
+      // Every corner has the value of its vertex on its own side, bit by bit.
+      std::size_t wrong = 0;
+      for (std::size_t c = 0; c < of.size(); ++c) {
+        const std::uint32_t source = d.attributes.source_corner[after[c]], value = t.corners[source];
+        wrong += t.mesh.corners[source] == d.source_vertex[of[c]] ? 0 : 1;
+        for (std::size_t k = 0; k < 2; ++k)
+          wrong += d.attributes.values[0][2 * after[c] + k] == t.values[2 * value + k] ? 0 : 1;
+        const auto chart = [&](std::uint32_t corner) {
+          const Vec3 p = t.mesh.points[t.mesh.corners[corner]];
+          return std::lround(t.values[2 * t.corners[corner]] - p.x * p.y);
+        };
+        wrong += chart(source) == chart(3 * d.source_face[c / 3]) ? 0 : 1;
+      }
+      CHECK(wrong == 0);
+    }
+    CHECK(left_before.size() < t.mesh.points.size() / 2);
+  }
+  CHECK(on_seams > 20);
+  CHECK(elsewhere > 100);
+}
+
+TEST_CASE("A chart of one face at the boundary is not cut off", "[decimate]") {
+  IndexedFaceSet mesh = test::grid(1, 1);
+  const Decimated alone = run(mesh, ways()[4]);
+  CHECK(alone.mesh.face_count() == 1);
+  DecimateOptions options = ways()[4];
+  const std::vector<std::uint32_t> groups = {0, 0, 0, 1, 1, 1};
+  options.corner_groups = groups;
+  const Decimated parted = run(mesh, options);
+  CHECK(parted.mesh.face_count() == 2);
+  CHECK(parted.held.seam == 2);
+}
+
+TEST_CASE("Vertices go in the exact order, too, and by criteria, with attributes", "[decimate]") {
+  for (const std::uint32_t seed : {3u, 4u, 5u}) {
+    IndexedFaceSet mesh = seed == 4 ? test::grid(24, 20) : test::icosphere(3);
+    test::jitter(mesh, 0.01f, seed);
+    const Textured t = with_random_charts(std::move(mesh), seed);
+    DecimateOptions options = ways()[4];
+    options.target_ratio = 0.2;
+    options.attributes = {t.attribute(0.05)};
+    const Decimated fast = run(t.mesh, options);
+    check_seams(t, fast);
+    const auto exact =
+        detail::decimate({t.mesh.points, t.mesh.corners}, options, detail::CollapseOrder::kExact);
+    if (!exact) FAIL(exact.error().describe());
+    check_seams(t, *exact);
+    CHECK(exact->stop == DecimateStop::kTargetReached);
+    CHECK(fast.attribute_error < 2 * exact->attribute_error);
+    options.criteria.aspect_weight = 0.1;
+    options.criteria.max_relative_distance = 0.05;
+    options.criteria.max_valence = 9;
+    const Decimated by_criteria = run(t.mesh, options);
+    check_seams(t, by_criteria);
+    CHECK(by_criteria.collapses > t.mesh.points.size() / 4);
   }
 }
 
@@ -900,10 +1036,6 @@ TEST_CASE("Attributes that decimation does not take", "[decimate]") {
   std::vector<float> bad = values;
   bad[3] = std::numeric_limits<float>::quiet_NaN();
   CHECK(code({1, bad, {}, 1.0, K::kPlain}) == ErrorCode::kUnsuitable);
-  DecimateOptions options;
-  options.operation = DecimateOperation::kVertexRemoval;
-  options.attributes = {{1, values, {}, 1.0, K::kPlain}};
-  CHECK(decimate(connectivity, mesh.points, options).error().code == ErrorCode::kUsage);
 }
 
 }  // namespace

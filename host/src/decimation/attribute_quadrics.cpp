@@ -57,7 +57,7 @@ void lock(EdgeBatch::Words& end, std::size_t lane) {
 
 AttributeQuadrics::AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_count, Wedges wedges,
                                      std::span<const DecimateAttribute> attributes,
-                                     std::span<const std::uint32_t> corners, double diagonal)
+                                     std::span<const std::uint32_t> corners, double diagonal, bool apart)
     : mesh_(mesh), wedges_(std::move(wedges)), attributes_(attributes), corners_(corners) {
   for (std::size_t a = 0; a < attributes.size(); ++a) {
     const DecimateAttribute& attribute = attributes[a];
@@ -90,9 +90,40 @@ AttributeQuadrics::AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_coun
       value_[w * n + k] = local;
       function_[w * n + k] = {{0.0f, 0.0f, 0.0f}, local};
     }
-  plain_.assign(&mesh.vertices[0], &mesh.vertices[0] + vertex_count);
-  deviation_.assign(vertex_count, 0.0f);
+  if (apart) {
+    apart_.resize(vertex_count);
+  } else {
+    plain_.assign(&mesh.vertices[0], &mesh.vertices[0] + vertex_count);
+    deviation_.assign(vertex_count, 0.0f);
+  }
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) add_face(f);
+}
+
+void AttributeQuadrics::keep_changes() {
+  keeps_changes_ = true;
+  changes_.values.resize(attributes_.size());
+  changes_.corners.resize(3 * mesh_.face_count());
+  for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
+    for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
+      changes_.corners[Wedges::source_corner(mesh_, h)] = wedges_.source_corner(wedges_[h]);
+}
+
+void AttributeQuadrics::keep_change(std::uint32_t h, bool moved) {
+  std::array<std::uint32_t, 2> joined{kInvalid, kInvalid};
+  std::size_t count = 0;
+  const auto add = [&](std::uint32_t wedge, std::uint32_t into) {
+    changes_.wedges.push_back({step_, wedges_.source_corner(wedge), wedges_.source_corner(into)});
+    append_values(into, moved, changes_.values);
+  };
+  wedges_.for_each_pair(mesh_, h, [&](std::uint32_t from, std::uint32_t to) {
+    add(from, to);
+    joined[count++] = to;
+  });
+  if (moved)
+    wedges_.for_each_at(mesh_, mesh_.target(h), [&](std::uint32_t w) {
+      if (w != joined[0] && w != joined[1]) add(w, w);
+    });
+  ++step_;
 }
 
 double AttributeQuadrics::value_of(std::size_t attribute, std::uint32_t corner, std::size_t component) const {
@@ -141,7 +172,8 @@ void AttributeQuadrics::add_face(std::uint32_t f) {
         difference[j] = gradient[j] - mean[j];
         mean[j] += part * difference[j];
       }
-      add_square(mesh_.vertices[origin[i]].a, difference, components_[k].cost * harmonic(area, weight));
+      CollapseVertex& vertex = apart_.empty() ? mesh_.vertices[origin[i]] : apart_[origin[i]];
+      add_square(vertex.a, difference, components_[k].cost * harmonic(area, weight));
     }
   }
   for (const std::uint32_t w : wedge) weight_[w] += area;
@@ -152,11 +184,11 @@ std::array<float, 3> AttributeQuadrics::between(std::uint32_t p, std::uint32_t q
   return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
 }
 
-void AttributeQuadrics::add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q,
+void AttributeQuadrics::add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q,
                                        const std::array<float, 3>& d, std::array<float, 6>& a,
                                        std::array<float, 3>& b, float& c) const {
   const std::size_t n = components_.size();
-  const float weight = harmonic(weight_[wedge_p], weight_[wedge_q]);
+  const float weight = harmonic(weight_[wedge_p], weight_q);
   for (std::size_t k = 0; k < n; ++k) {
     const Function &p = function_[wedge_p * n + k], &q = function_[wedge_q * n + k];
     const std::array<float, 3> g = {p.gradient[0] - q.gradient[0], p.gradient[1] - q.gradient[1],
@@ -198,8 +230,9 @@ void AttributeQuadrics::add_to(EdgeBatch& batch, std::span<const std::uint32_t> 
       std::array<float, 6> a{};
       std::array<float, 3> b{};
       float c = 0;
-      wedges_.for_each_pair(mesh_, h,
-                            [&](std::uint32_t wp, std::uint32_t wq) { add_difference(wp, wq, d, a, b, c); });
+      wedges_.for_each_pair(mesh_, h, [&](std::uint32_t wp, std::uint32_t wq) {
+        add_difference(wp, wq, weight_[wq], d, a, b, c);
+      });
       for (std::size_t k = 0; k < 6; ++k) batch.p[5 + k][i] += a[k];
       batch.p[11][i] += c;
       for (std::size_t k = 0; k < 3; ++k) batch.p[12 + k][i] += b[k];
@@ -251,27 +284,105 @@ void AttributeQuadrics::move(std::uint32_t wedge, const std::array<float, 3>& by
 
 void AttributeQuadrics::collapse(std::uint32_t h, const std::array<float, 3>& move_gone,
                                  const std::array<float, 3>& move_kept) {
-  const std::size_t n = components_.size();
   const std::uint32_t gone = mesh_.origin(h), kept = mesh_.target(h);
   plain_[gone].shift(move_gone);
   plain_[kept].shift(move_kept);
   merge(plain_[kept], plain_[gone]);
   wedges_.for_each_at(mesh_, kept, [&](std::uint32_t w) { move(w, move_kept); });
   CollapseVertex& vertex = mesh_.vertices[kept];
+  constexpr std::array<float, 3> kSamePlace = {0.0f, 0.0f, 0.0f};
   wedges_.for_each_pair(mesh_, h, [&](std::uint32_t from, std::uint32_t to) {
     move(from, move_gone);
-    add_difference(to, from, {0.0f, 0.0f, 0.0f}, vertex.a, vertex.b, vertex.c);
-    const float part = share(weight_[from], weight_[to]);
-    for (std::size_t k = 0; k < n; ++k) {
-      Function& f = function_[to * n + k];
-      const Function& g = function_[from * n + k];
-      for (std::size_t j = 0; j < 3; ++j) f.gradient[j] += part * (g.gradient[j] - f.gradient[j]);
-      f.value += part * (g.value - f.value);
-    }
-    weight_[to] += weight_[from];
+    add_difference(to, from, weight_[from], kSamePlace, vertex.a, vertex.b, vertex.c);
+    join(to, from, weight_[from], kSamePlace);
   });
+  if (keeps_changes_) keep_change(h, vertex.has(CollapseVertex::kMoved) || move_kept != kSamePlace);
   wedges_.collapse(mesh_, h);
   deviation_[kept] = deviation(kept);
+}
+
+void AttributeQuadrics::join(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q,
+                             const std::array<float, 3>& d) {
+  const std::size_t n = components_.size();
+  const float part = share(weight_q, weight_[wedge_p]);
+  for (std::size_t k = 0; k < n; ++k) {
+    Function& f = function_[wedge_p * n + k];
+    const Function& g = function_[wedge_q * n + k];
+    const float value = g.value - dot(g.gradient, d);
+    for (std::size_t j = 0; j < 3; ++j) f.gradient[j] += part * (g.gradient[j] - f.gradient[j]);
+    f.value += part * (value - f.value);
+  }
+  weight_[wedge_p] += weight_q;
+}
+
+void AttributeQuadrics::prepare(HoleAttributes& holes) const {
+  for (const Component& component : components_) holes.components.emplace_back().cost = component.cost;
+}
+
+void AttributeQuadrics::set(HoleAttributes& holes, std::size_t lane, std::span<const std::uint32_t> edges,
+                            std::size_t neighbours, const SeamSides& sides) const {
+  const std::size_t n = components_.size();
+  const CollapseVertex& left = apart_[mesh_.origin(edges[0])];
+  for (std::size_t k = 0; k < 6; ++k) holes.a[k][lane] = left.a[k];
+  for (std::size_t k = 0; k < 3; ++k) holes.b[k][lane] = left.b[k];
+  holes.c[lane] = left.c;
+  holes.last[lane] = static_cast<std::int32_t>(sides.last);
+  holes.parted[lane] = sides.parted ? 1 : 0;
+  for (std::size_t side = 0; side < sides.count(); ++side) {
+    const std::uint32_t own = wedges_.on_side(edges, sides, side);
+    holes.weight[side][lane] = weight_[own];
+    for (std::size_t k = 0; k < n; ++k) {
+      HoleAttributes::OnSide& on_side = holes.components[k].side[side];
+      const Function& mean = function_[own * n + k];
+      on_side.off[lane] = mean.value - value_[own * n + k];
+      for (std::size_t j = 0; j < 3; ++j) on_side.gradient[j][lane] = mean.gradient[j];
+    }
+    for (std::size_t i = 0; i < neighbours; ++i) {
+      if (!sides.has(side, i)) continue;
+      const std::uint32_t wedge = wedges_.of_neighbour(edges, sides, side, i);
+      for (std::size_t k = 0; k < n; ++k)
+        holes.components[k].side[side].ring[i][lane] = value_[wedge * n + k] - value_[own * n + k];
+    }
+  }
+}
+
+void AttributeQuadrics::hand_on(std::span<const std::uint32_t> edges, const SeamSides& sides,
+                                std::size_t neighbour, float part) {
+  const std::uint32_t v = mesh_.origin(edges[0]), heir = mesh_.target(edges[neighbour]);
+  const std::array<float, 3> d = between(heir, v);
+  CollapseVertex &left = apart_[heir], moved = apart_[v];
+  moved.shift({-d[0], -d[1], -d[2]});
+  for (std::size_t k = 0; k < 6; ++k) left.a[k] += part * moved.a[k];
+  for (std::size_t k = 0; k < 3; ++k) left.b[k] += part * moved.b[k];
+  left.c += part * moved.c;
+  for (std::size_t side = 0; side < sides.count(); ++side) {
+    const std::uint32_t from = wedges_.on_side(edges, sides, side),
+                        to = wedges_.of_neighbour(edges, sides, side, neighbour);
+    add_difference(to, from, part * weight_[from], d, left.a, left.b, left.c);
+    join(to, from, part * weight_[from], d);
+  }
+}
+
+void AttributeQuadrics::append_values(std::uint32_t wedge, bool moved,
+                                      std::vector<std::vector<float>>& values) const {
+  const std::size_t n = components_.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Component& c = components_[k];
+    double value = value_of(c.attribute, wedges_.source_corner(wedge), c.index);
+    if (moved)
+      value = std::clamp(c.middle + c.range * static_cast<double>(function_[wedge * n + k].value),
+                         static_cast<double>(c.low), static_cast<double>(c.high));
+    values[c.attribute].push_back(static_cast<float>(value));
+  }
+  for (std::size_t a = 0; moved && a < attributes_.size(); ++a) {
+    if (attributes_[a].kind != AttributeKind::kNormal) continue;
+    const std::span<float> normal(values[a].end() - 3, 3);
+    const double x = normal[0], y = normal[1], z = normal[2], length = std::sqrt(x * x + y * y + z * z);
+    if (!(length > 0)) continue;
+    normal[0] = static_cast<float>(x / length);
+    normal[1] = static_cast<float>(y / length);
+    normal[2] = static_cast<float>(z / length);
+  }
 }
 
 DecimatedAttributes AttributeQuadrics::gather(std::span<const std::uint32_t> faces,
@@ -283,31 +394,12 @@ DecimatedAttributes AttributeQuadrics::gather(std::span<const std::uint32_t> fac
     for (std::uint32_t i = 0; i < 3; ++i)
       result.corners[3 * new_face[mesh_.face(4 * f).source] + i] = 4 * f + i;
   std::vector<std::uint32_t> number(wedges_.count(), kInvalid);  // in order of appearance
-  const std::size_t n = components_.size();
   for (std::uint32_t& corner : result.corners) {
     const std::uint32_t h = corner, w = wedges_[h];
     if (number[w] == kInvalid) {
       number[w] = static_cast<std::uint32_t>(result.source_corner.size());
-      const std::uint32_t source = wedges_.source_corner(w);
-      result.source_corner.push_back(source);
-      const bool moved = mesh_.vertices[mesh_.origin(h)].has(CollapseVertex::kMoved);
-      for (std::size_t k = 0; k < n; ++k) {
-        const Component& c = components_[k];
-        double value = value_of(c.attribute, source, c.index);
-        if (moved)
-          value = std::clamp(c.middle + c.range * static_cast<double>(function_[w * n + k].value),
-                             static_cast<double>(c.low), static_cast<double>(c.high));
-        result.values[c.attribute].push_back(static_cast<float>(value));
-      }
-      for (std::size_t a = 0; moved && a < attributes_.size(); ++a) {
-        if (attributes_[a].kind != AttributeKind::kNormal) continue;
-        const std::span<float> normal(result.values[a].end() - 3, 3);
-        const double x = normal[0], y = normal[1], z = normal[2], length = std::sqrt(x * x + y * y + z * z);
-        if (!(length > 0)) continue;
-        normal[0] = static_cast<float>(x / length);
-        normal[1] = static_cast<float>(y / length);
-        normal[2] = static_cast<float>(z / length);
-      }
+      result.source_corner.push_back(wedges_.source_corner(w));
+      append_values(w, mesh_.vertices[mesh_.origin(h)].has(CollapseVertex::kMoved), result.values);
     }
     corner = number[w];
   }

@@ -200,7 +200,8 @@ bool CollapseMesh::close(std::span<const std::uint32_t> boundary) {
 }
 
 std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32_t> edges,
-                                                     std::span<const std::array<std::uint8_t, 3>> triangles) {
+                                                     std::span<const std::array<std::uint8_t, 3>> triangles,
+                                                     std::size_t first) {
   const std::size_t n = edges.size();
   std::array<std::uint32_t, kMostAtHole> vertex, record;
   // By two corners the half-edge that waits for its twin: first what lies around the hole, then edges of
@@ -216,9 +217,10 @@ std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32
   }
   // The faces at an apex are the last two.
   const std::size_t ghost = vertex[n - 1] == apex_ ? n - 1 : kInvalid;
-  std::size_t taken = 0;
+  std::size_t taken = first;
   for (const auto& [a, b, c] : triangles) {
-    const std::uint32_t f = c == ghost ? record[n - 1] : record[taken++], h = 4 * f;
+    const std::uint32_t f = c == ghost ? record[n - 1] : record[taken], h = 4 * f;
+    if (c != ghost) taken = taken + 2 < n ? taken + 1 : 0;
     Face& face = faces_[f];
     face.tags = 0;
     face.origin = {vertex[a], vertex[b], vertex[c]};

@@ -43,6 +43,13 @@ Result<Outcome> run_collapses(DecimationState& state, bool exact, const Progress
 }
 
 template <bool kAttributes>
+Result<Outcome> run_vertex_removals(DecimationState& state, bool exact, const Progress& progress) {
+  if (exact || (state.criteria != nullptr && state.criteria->ranks()))
+    return run_removals<VertexRemovals<ExactQueue, kAttributes>>(state, progress);
+  return run_removals<VertexRemovals<LazyQueue, kAttributes>>(state, progress);
+}
+
+template <bool kAttributes>
 Result<Outcome> run_edge_collapses(DecimationState& state, const DecimateOptions& options, bool exact,
                                    const Progress& progress) {
   if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
@@ -57,9 +64,8 @@ Result<Outcome> run(DecimationState& state, const DecimateOptions& options, Coll
                     const Progress& progress) {
   const bool exact = order == CollapseOrder::kExact;
   if (options.operation == DecimateOperation::kVertexRemoval)
-    return (exact || (state.criteria != nullptr && state.criteria->ranks())
-                ? run_removals<VertexRemovals<ExactQueue>>
-                : run_removals<VertexRemovals<LazyQueue>>)(state, progress);
+    return (state.attributes != nullptr ? run_vertex_removals<true>
+                                        : run_vertex_removals<false>)(state, exact, progress);
   return (state.attributes != nullptr ? run_edge_collapses<true>
                                       : run_edge_collapses<false>)(state, options, exact, progress);
 }
@@ -70,9 +76,6 @@ Result<void> check_attributes(const DecimateOptions& options, std::size_t vertic
     return usage("seam_weight must be at least 0 and finite");
   if (!options.corner_groups.empty() && options.corner_groups.size() != corners)
     return usage("corner_groups needs a number for each corner of the mesh");
-  const bool any = !options.attributes.empty() || !options.corner_groups.empty();
-  if (any && options.operation == DecimateOperation::kVertexRemoval)
-    return usage("vertex removal takes no attributes: collapse edges or half-edges");
   for (const DecimateAttribute& a : options.attributes) {
     if (!(a.weight >= 0 && std::isfinite(a.weight)))
       return usage("the weight of an attribute must be at least 0 and finite");
@@ -271,7 +274,8 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   std::optional<AttributeQuadrics> attributes;
   const double local_diagonal = frame.diagonal * frame.scale;
   if (wedges)
-    attributes.emplace(mesh, points.size(), std::move(*wedges), options.attributes, corners, local_diagonal);
+    attributes.emplace(mesh, points.size(), std::move(*wedges), options.attributes, corners, local_diagonal,
+                       options.operation == DecimateOperation::kVertexRemoval);
 
   Pruned pruned;
   if (options.prune_size || options.prune_relative_size)
@@ -306,8 +310,11 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         options.boundary == DecimateBoundary::kKept};
   if (order == CollapseOrder::kParted) state.part_faces = 32;
-  VKMESH_TRY(const Outcome outcome, run(state, options, order, progress));
+  if (attributes && options.keep_history) attributes->keep_changes();
+  VKMESH_TRY(Outcome outcome, run(state, options, order, progress));
   BasicDecimated<Point> result = gather(mesh, points, in_order, frame, outcome, state.attributes);
+  if (attributes) result.changes = attributes->take_changes();
+  result.changes.faces = std::move(outcome.changed_faces);
   if (criteria.watches_distance()) result.distance_bound = criteria.distance(mesh) / frame.scale;
   result.pruned_components = pruned.components;
   result.pruned_faces = pruned.faces;

@@ -46,8 +46,9 @@ struct Outcome {
   Census held{};                     // in the end, where no target was reached
   std::size_t held_by_boundary = 0;  // of those that are locked
   std::vector<Event> events;
+  std::vector<DecimationChanges::Face> changed_faces;  // by removals, if events are kept
 
-  /// What has been done meanwhile.
+  /// What parts have done meanwhile by collapses of edges.
   Outcome& operator+=(const Outcome& more) {
     error2 = std::max(error2, more.error2);
     attribute_error2 = std::max(attribute_error2, more.attribute_error2);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "passes/clones.h"
 
@@ -22,7 +23,7 @@ namespace vkmesh::detail {
 namespace {
 
 constexpr std::size_t kLanes = HoleBatch::kLanes, kMost = HoleBatch::kMost, kPairs = HoleBatch::kPairs;
-constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
+constexpr std::size_t kTriples = HoleAttributes::kTriples;
 using Lanes = HoleBatch::Lanes;
 using Flags = std::array<std::int32_t, kLanes>;
 
@@ -64,6 +65,7 @@ struct alignas(64) Work {
   std::array<Lanes, kTriples> at_v, total;
   std::array<Lanes, kPairs> best, error;
   Lanes scale, back2, back4, rounding2, area, along0, along1, along2, base, of_length;
+  Lanes toward;   // where on its new edge a vertex on a boundary or seam goes, from 0 to 1
   Lanes illegal;  // kNone where it is so, else 0
   std::size_t n;
 };
@@ -196,16 +198,22 @@ void find_sides(HoleBatch& batch, Work& w) {
   VKMESH_LANES(l) w.illegal[l] = std::max(w.illegal[l], again[l] > 0 ? kNone : 0.0f);
 }
 
-// The quadric along the normal, and on a new boundary edge.
-void find_quadric(const HoleBatch& batch, Work& w) {
-  const std::size_t n = w.n;
+/// Where the new edge that a vertex on a boundary or seam goes to ends, which begins at the first neighbour;
+/// 1 where it lies on neither.
+struct Curve {
+  const Vectors& to;
+  const Lanes& is_none;
+};
+
+// The quadric along the normal, and on the new edge of a boundary or seam.
+void find_quadric(const HoleBatch& batch, const Curve& curve, Work& w) {
   VKMESH_LANES(l) {
     const float x = w.up[0][l], y = w.up[1][l], z = w.up[2][l];
     const float a0 = batch.a[0][l], a1 = batch.a[1][l], a2 = batch.a[2][l], a3 = batch.a[3][l],
                 a4 = batch.a[4][l], a5 = batch.a[5][l];
     const float b0 = batch.b[0][l], b1 = batch.b[1][l], b2 = batch.b[2][l];
     const float back = 1.0f / w.scale[l];
-    const float closed = batch.closed[l];
+    const float closed = curve.is_none[l];
     w.along0[l] = closed * batch.c[l];
     w.along1[l] = closed * (x * b0 + y * b1 + z * b2) * back;
     w.along2[l] =
@@ -213,12 +221,12 @@ void find_quadric(const HoleBatch& batch, Work& w) {
     w.of_length[l] = kOfLength * w.area[l] * w.back4[l];
     const float px = batch.ring[0][0][l] - batch.v[0][l], py = batch.ring[0][1][l] - batch.v[1][l],
                 pz = batch.ring[0][2][l] - batch.v[2][l];
-    const float dx = batch.ring[n - 1][0][l] - batch.ring[0][0][l],
-                dy = batch.ring[n - 1][1][l] - batch.ring[0][1][l],
-                dz = batch.ring[n - 1][2][l] - batch.ring[0][2][l];
+    const float dx = curve.to[0][l] - batch.ring[0][0][l], dy = curve.to[1][l] - batch.ring[0][1][l],
+                dz = curve.to[2][l] - batch.ring[0][2][l];
     const float squared = dx * dx + dy * dy + dz * dz;
     const float along = -(px * dx + py * dy + pz * dz) / (squared > 0 ? squared : 1.0f);
     const float t = along > 1 ? 1.0f : along > 0 ? along : 0.0f;
+    w.toward[l] = t;
     const float qx = px + t * dx, qy = py + t * dy, qz = pz + t * dz;
     const float q = batch.c[l] + qx * ((a0 * qx + a1 * qy + a2 * qz) + 2 * b0) +
                     qy * ((a1 * qx + a3 * qy + a4 * qz) + 2 * b1) +
@@ -320,6 +328,141 @@ void add_shapes(const HoleBatch& batch, Work& w) {
       }
 }
 
+// Where the new edges of boundaries and seams end, which begin at the first neighbour.
+void find_curves(const HoleBatch& batch, const HoleAttributes& attributes, Vectors& to, Lanes& is_none) {
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    is_none[l] = attributes.parted[l] != 0 ? 0.0f : batch.closed[l];
+    for (std::size_t k = 0; k < 3; ++k)
+      to[k][l] = batch.ring[static_cast<std::size_t>(attributes.last[l])][k][l];
+  }
+}
+
+// What it costs where a neighbour takes over all that v stands for; on the new edge of a boundary or seam,
+// where both ends take their shares.
+void find_heirs(const HoleBatch& batch, const Curve& curve, const Work& w, HoleAttributes& attributes) {
+  const auto& a = attributes.a;
+  const auto& b = attributes.b;
+  for (std::size_t i = 0; i < w.n; ++i) {
+    alignas(64) Vectors at;
+    auto& [one, other] = attributes.heir[i];
+    VKMESH_LANES(l) {
+      const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
+                  z = batch.ring[i][2][l] - batch.v[2][l];
+      const float left = attributes.c[l] + x * (a[0][l] * x + 2 * (a[1][l] * y + a[2][l] * z + b[0][l])) +
+                         y * (a[3][l] * y + 2 * (a[4][l] * z + b[1][l])) + z * (a[5][l] * z + 2 * b[2][l]);
+      at[0][l] = x;
+      at[1][l] = y;
+      at[2][l] = z;
+      one[l] = left > 0 ? left : 0.0f;
+      other[l] = 0;
+    }
+    for (const auto& component : attributes.components)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto& [off, gradient, ring] = component.side[side];
+        Lanes& sum = attributes.heir[i][side];
+        VKMESH_LANES(l) {
+          const float apart = (off[l] - ring[i][l]) + (gradient[0][l] * at[0][l] + gradient[1][l] * at[1][l] +
+                                                       gradient[2][l] * at[2][l]);
+          sum[l] += component.cost * attributes.weight[side][l] * (apart * apart);
+        }
+      }
+  }
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const auto all = [&](std::size_t i) {
+      const auto& [one, other] = attributes.heir[i];
+      return one[l] + (attributes.parted[l] != 0 ? other[l] : 0.0f);
+    };
+    const float t = w.toward[l];
+    const auto last = static_cast<std::size_t>(attributes.last[l]);
+    attributes.error[l] = curve.is_none[l] > 0 ? 0.0f : (1 - t) * all(0) + t * all(last);
+  }
+}
+
+// What attributes make of each triangle, and of the new edges by what lies across them.
+void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleAttributes& attributes) {
+  const std::size_t n = w.n;
+  for (std::size_t ij = 0; ij < pair(0, n); ++ij) {
+    attributes.inside[ij].fill(0);
+    attributes.outside[ij].fill(0);
+  }
+  std::size_t abc = 0;
+  for (std::size_t c = 2; c < n; ++c)
+    for (std::size_t b = 1; b < c; ++b)
+      for (std::size_t a = 0; a < b; ++a, ++abc) {
+        const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c);
+        const auto ia = static_cast<std::int32_t>(a), ib = static_cast<std::int32_t>(b),
+                   ic = static_cast<std::int32_t>(c);
+        alignas(64) Lanes whole, crossing{}, counts;
+        alignas(64) Flags on_first;
+        VKMESH_LANES(l) {
+          const float sum = w.ahead[ab][l] + w.ahead[bc][l] + w.behind[ac][l];
+          whole[l] = sum > 0 ? sum : 1.0f;
+          // No triangle across the seam is made, and what it says of edges is no matter of either side.
+          const std::int32_t last = attributes.last[l];
+          on_first[l] = ic <= last;
+          counts[l] = (ic <= last) | (((ia == 0) | (ia >= last)) & (ib >= last)) ? 1.0f : 0.0f;
+        }
+        for (const auto& component : attributes.components) {
+          const HoleAttributes::OnSide &one = component.side[0], &other = component.side[1];
+          VKMESH_LANES(l) {
+            const bool is_one = on_first[l] != 0;
+            const float at_a = is_one ? one.ring[a][l] : other.ring[a][l],
+                        at_b = is_one ? one.ring[b][l] : other.ring[b][l],
+                        at_c = is_one ? one.ring[c][l] : other.ring[c][l];
+            const float apart =
+                (batch.left[bc][l] * at_a - batch.left[ac][l] * at_b + batch.left[ab][l] * at_c) / whole[l];
+            crossing[l] += component.cost * apart * apart;
+          }
+        }
+        const bool last_is_side = a == 0 && c + 1 == n;
+        const Lanes &heir_a = attributes.heir[a][0], &heir_b = attributes.heir[b][0],
+                    &heir_c = attributes.heir[c][0];
+        VKMESH_LANES(l) {
+          const float x1 = batch.left[ab][l], x2 = batch.left[bc][l], x3 = -batch.left[ac][l];
+          const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (last_is_side & (x3 >= 0)));
+          const float taken = (x2 * heir_a[l] + x3 * heir_b[l] + x1 * heir_c[l]) / whole[l];
+          const float at_v = holds & (curve.is_none[l] > 0) ? taken : 0.0f;
+          attributes.at_v[abc][l] = at_v;
+          w.total[abc][l] += at_v;
+          const float each = counts[l] * crossing[l] * (w.scale[l] * w.scale[l]);
+          attributes.inside[ac][l] += w.spoke[b][l] * each;
+          attributes.outside[ab][l] += w.spoke[c][l] * each;
+          attributes.outside[bc][l] += w.spoke[a][l] * each;
+        }
+      }
+  for (std::size_t c = 1; c < n; ++c)
+    for (std::size_t a = 0; a < c; ++a) {
+      const std::size_t ac = pair(a, c);
+      const bool is_root = a == 0 && c + 1 == n;
+      VKMESH_LANES(l) {
+        const bool is_new = !(is_root & (batch.closed[l] > 0));
+        const float x = batch.left[ac][l];
+        const float crossed = x > 0 ? attributes.inside[ac][l] : x < 0 ? attributes.outside[ac][l] : 0.0f;
+        attributes.edge[ac][l] = is_new ? crossed : 0.0f;
+      }
+    }
+}
+
+// Of the triangulations that were chosen.
+void sum_attributes(const HoleBatch& batch, const Work& w, HoleAttributes& attributes) {
+  std::array<std::pair<std::size_t, std::size_t>, kMost> parts;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    if (!(batch.error[l] < kNone)) continue;
+    float sum = 0;
+    std::size_t left = 0;
+    parts[left++] = {0, w.n - 1};
+    while (left > 0) {
+      const auto [a, c] = parts[--left];
+      if (a + 1 == c) continue;
+      const auto b = static_cast<std::size_t>(batch.third[pair(a, c)][l]);
+      sum += attributes.edge[pair(a, c)][l] + attributes.at_v[triple(a, b, c)][l];
+      parts[left++] = {a, b};
+      parts[left++] = {b, c};
+    }
+    attributes.error[l] += sum;
+  }
+}
+
 /// The best of kCount third corners from `from` on, and of those before when these are not the first.
 template <std::size_t kCount, bool kAreFirst>
 [[gnu::always_inline]] inline void choose(HoleBatch& batch, Work& w, std::size_t a, std::size_t c,
@@ -349,7 +492,8 @@ template <std::size_t kCount, bool kAreFirst>
 }
 
 // The best of each part between two neighbours.
-void choose_all(HoleBatch& batch, Work& w) {
+template <bool kAttributes>
+void choose_all(HoleBatch& batch, Work& w, const HoleAttributes* attributes) {
   const std::size_t n = w.n, root = pair(0, n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     w.best[pair(i, i + 1)].fill(0);
@@ -376,6 +520,7 @@ void choose_all(HoleBatch& batch, Work& w) {
         const float x = batch.left[ac][l];
         const float crossed = is_new * (x > 0 ? w.inside[ac][l] : x < 0 ? w.outside[ac][l] : 0.0f);
         w.best[ac][l] += crossed + is_new * w.of_length[l] * w.distance2[ac][l] + batch.barred[ac][l];
+        if constexpr (kAttributes) w.best[ac][l] += attributes->edge[ac][l];
         w.error[ac][l] += crossed;
       }
     }
@@ -388,17 +533,32 @@ void choose_all(HoleBatch& batch, Work& w) {
 }  // namespace
 
 // Each loop over lanes is one over vector registers.
-VKMESH_FLAT_CLONES void fill_holes(HoleBatch& batch, std::size_t neighbours, float cos_deviation) {
+VKMESH_FLAT_CLONES void fill_holes(HoleBatch& batch, std::size_t neighbours, float cos_deviation,
+                                   HoleAttributes* attributes) {
   Work w;
   w.n = neighbours;
   scale_ring(batch, w);
   cross_all(w);
   find_faces(batch, w, cos_deviation * std::fabs(cos_deviation));
   find_sides(batch, w);
-  find_quadric(batch, w);
-  judge_all(batch, w);
-  if (batch.shape > 0) add_shapes(batch, w);
-  choose_all(batch, w);
+  if (attributes == nullptr) {
+    find_quadric(batch, {batch.ring[neighbours - 1], batch.closed}, w);
+    judge_all(batch, w);
+    if (batch.shape > 0) add_shapes(batch, w);
+    choose_all<false>(batch, w, nullptr);
+  } else {
+    alignas(64) Vectors to;
+    alignas(64) Lanes is_none;
+    find_curves(batch, *attributes, to, is_none);
+    const Curve curve{to, is_none};
+    find_quadric(batch, curve, w);
+    find_heirs(batch, curve, w, *attributes);
+    judge_all(batch, w);
+    if (batch.shape > 0) add_shapes(batch, w);
+    judge_attributes(batch, curve, w, *attributes);
+    choose_all<true>(batch, w, attributes);
+    sum_attributes(batch, w, *attributes);
+  }
 }
 
 }  // namespace vkmesh::detail

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace vkmesh::detail {
 
@@ -26,6 +27,14 @@ namespace vkmesh::detail {
 /// triangle holds v, or one's edge of v crosses the new edge of the others. Either way the surfaces lie
 /// det(a, b, c) / Σ max(0, X) apart there, where X are twice the signed areas, seen along the normal, of the
 /// three triangles with v: nothing but products of neighbours is needed.
+///
+/// Attributes count as heights do where old and new edges cross: the squared difference of the values of both
+/// surfaces. What v stands for is taken over by the corners of the triangle below it, each its barycentric
+/// share, and counts there: its mean functions against the values of the corners, with the weight of its
+/// wedge, and what is left of their quadrics (see AttributeQuadrics). Where all goes to one corner, that is
+/// what a collapse into it costs. Where a seam runs through v, the new edge between its ends is made, and v
+/// goes to the nearest point of it, whose ends take over, as a vertex of the boundary does; each side has
+/// values and mean functions of its own, and is compared with itself alone.
 struct HoleBatch {
   static constexpr std::size_t kLanes = 16;
   static constexpr std::size_t kMost = 16;  // neighbours
@@ -68,8 +77,50 @@ struct HoleBatch {
   alignas(64) std::array<Lanes, kPairs> left;
 };
 
-/// Finds the best triangulations in which no face turns by more than the angle whose cosine is given. O(n³)
-/// for n neighbours. The bytes are the same on every machine.
-void fill_holes(HoleBatch& batch, std::size_t neighbours, float cos_deviation);
+/// What attributes add to the holes of a batch. Differences of values count `cost` times their square.
+struct HoleAttributes {
+  using Lanes = HoleBatch::Lanes;
+  static constexpr std::size_t kMost = HoleBatch::kMost;
+
+  // Input.
+
+  /// The mean function of v's wedge on one side of a seam, and what is there; values less that of v.
+  struct OnSide {
+    alignas(64) Lanes off{};  // of the mean function at v
+    alignas(64) std::array<Lanes, 3> gradient{};
+    alignas(64) std::array<Lanes, kMost> ring{};  // of neighbours
+  };
+  struct Component {
+    float cost;
+    std::array<OnSide, 2> side;
+  };
+  std::vector<Component> components;
+  /// Of v's wedge on each side.
+  alignas(64) std::array<Lanes, 2> weight{};
+  /// What is left for the best values, as a quadric about v.
+  alignas(64) std::array<Lanes, 6> a{};
+  alignas(64) std::array<Lanes, 3> b{};
+  alignas(64) Lanes c{};
+  /// The sides of a seam through v, as SeamSides has them. New edges across it must be barred.
+  std::array<std::int32_t, HoleBatch::kLanes> last{}, parted{};
+
+  // Result.
+
+  /// What they add to the error, which is without.
+  alignas(64) Lanes error{};
+
+  // Where a neighbour takes all over, on each side; of each triangle; of each new edge where v lies left of
+  // it, right of it, and what counts.
+  alignas(64) std::array<std::array<Lanes, 2>, kMost> heir{};
+  static constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
+  alignas(64) std::array<Lanes, kTriples> at_v{};
+  alignas(64) std::array<Lanes, HoleBatch::kPairs> inside{}, outside{}, edge{};
+};
+
+/// Finds the best triangulations in which no face turns by more than the angle whose cosine is given; of the
+/// same sum with those of attributes, if there are any. O(n³) for n neighbours and each component. The bytes
+/// are the same on every machine.
+void fill_holes(HoleBatch& batch, std::size_t neighbours, float cos_deviation,
+                HoleAttributes* attributes = nullptr);
 
 }  // namespace vkmesh::detail

@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
 #include <vkmesh/handles.h>
 
+#include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
@@ -27,7 +29,7 @@ namespace vkmesh::detail {
 ///
 /// Each vertex that may go stands in the queue once. One that cannot be removed is parked, and comes back
 /// when a neighbour has gone: nothing else can make its removal legal.
-template <class Queue>
+template <class Queue, bool kAttributes = false>
 class VertexRemovals {
  public:
   explicit VertexRemovals(DecimationState& state)
@@ -37,6 +39,10 @@ class VertexRemovals {
         queue_(vertices_.size(), vertices_.size()) {
     due_.reserve(kStars);
     if (state_.criteria != nullptr) holes_.shape = other_.shape = state_.criteria->shape_over_quadric();
+    if constexpr (kAttributes) {
+      state_.attributes->prepare(attributes_);
+      state_.attributes->prepare(other_attributes_);
+    }
   }
 
   static constexpr std::size_t kStep = Queue::kExact ? 1 : 512;
@@ -115,6 +121,7 @@ class VertexRemovals {
         evaluate([&](const HoleStar& star, std::size_t lane) {
           if (!(holes_.error[lane] < kNone)) return count(Legality::kFoldOver);
           Removal removal = removal_of(star, lane);
+          if (!keeps_seams(star)) return count(Legality::kSeam);
           if (is_pillow(star)) return count(Legality::kLink);
           avoid_existing(removal);
           count(removal.error < kNone ? judge(removal) : Legality::kLink);
@@ -135,8 +142,10 @@ class VertexRemovals {
     std::uint32_t vertex, edges;  // edges: how many
     bool closed;
     std::array<std::uint32_t, kMost + 1> edge, target;
+    SeamSides sides;  // with attributes
 
     [[nodiscard]] std::size_t neighbours() const { return closed ? edges : edges - 1; }
+    [[nodiscard]] std::span<const std::uint32_t> all_edges() const { return std::span(edge).first(edges); }
   };
   using Triangle = std::array<std::uint8_t, 3>;
   /// With what closes the boundary; each before those beyond its new edges.
@@ -152,7 +161,7 @@ class VertexRemovals {
   };
   struct Removal {
     const HoleStar* star;
-    float error;
+    float error, of_attributes;
     Triangles triangles;
     Heirs heirs;
     bool has_existing;  // a new edge that the mesh has already
@@ -205,6 +214,7 @@ class VertexRemovals {
         continue;
       }
       if (!star.closed) put_apex_last(star);
+      if constexpr (kAttributes) part(star);
       ++first[star.neighbours() + 1];
     }
     for (std::size_t n = 1; n < first.size(); ++n) first[n] += first[n - 1];
@@ -221,9 +231,29 @@ class VertexRemovals {
 
   void put_apex_last(HoleStar& star) const {
     const auto end = star.target.begin() + star.edges;
-    const auto turn = std::find(star.target.begin(), end, mesh_.apex()) - star.target.begin() + 1;
-    std::rotate(star.target.begin(), star.target.begin() + turn, end);
-    std::rotate(star.edge.begin(), star.edge.begin() + turn, star.edge.begin() + star.edges);
+    begin_at(star, std::find(star.target.begin(), end, mesh_.apex()) - star.target.begin() + 1);
+  }
+  static void begin_at(HoleStar& star, std::ptrdiff_t i) {
+    std::rotate(star.target.begin(), star.target.begin() + i, star.target.begin() + star.edges);
+    std::rotate(star.edge.begin(), star.edge.begin() + i, star.edge.begin() + star.edges);
+  }
+
+  /// By the seam through the vertex, if any; the first edge is then of it.
+  void part(HoleStar& star) const {
+    const Wedges& wedges = state_.attributes->wedges();
+    const auto is_seam = [&](std::uint32_t h) { return wedges.is_seam(mesh_, h); };
+    if (wedges.on_seam(star.vertex))
+      begin_at(star,
+               std::find_if(star.edge.begin(), star.edge.begin() + star.edges, is_seam) - star.edge.begin());
+    star.sides = wedges.sides(mesh_, star.all_edges(), star.neighbours());
+  }
+
+  /// At which edge the face is whose place the first new triangle takes: triangles take those of their side,
+  /// those of side 1 first.
+  [[nodiscard]] static std::size_t first_face([[maybe_unused]] const HoleStar& star) {
+    if constexpr (kAttributes)
+      if (star.sides.parted) return star.sides.last % (star.edges - 1);
+    return 0;
   }
 
   /// Calls use(star, lane) for all stars that were walked, with their holes filled in that lane of holes_.
@@ -232,21 +262,41 @@ class VertexRemovals {
     for (std::size_t n = 1; n <= kMost; ++n)
       for (std::size_t from = first_[n]; from < first_[n + 1]; from += HoleBatch::kLanes) {
         const std::size_t count = std::min<std::size_t>(first_[n + 1] - from, HoleBatch::kLanes);
-        set(holes_, std::span(order_).subspan(from, count));
+        set(holes_, attributes_, std::span(order_).subspan(from, count));
         const std::size_t next = from + count, left = first_[kMost + 1] - next;
         for (std::size_t i = next; i < next + std::min(left, HoleBatch::kLanes); ++i) {
           const HoleStar& star = walked_[order_[i]];
           prefetch(&vertices_[star.vertex]);
           for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.target[k]]);
         }
-        fill_holes(holes_, n, state_.limits.cos_deviation);
+        fill(holes_, attributes_, n);
         for (std::size_t lane = 0; lane < count; ++lane) use(walked_[order_[from + lane]], lane);
       }
   }
 
+  struct None {};
+  using Attributes = std::conditional_t<kAttributes, HoleAttributes, None>;
+
+  void fill(HoleBatch& holes, Attributes& attributes, std::size_t neighbours) const {
+    if constexpr (kAttributes)
+      fill_holes(holes, neighbours, state_.limits.cos_deviation, &attributes);
+    else
+      fill_holes(holes, neighbours, state_.limits.cos_deviation);
+  }
+
   /// Puts walked stars, all of as many neighbours, into the lanes from 0 on. Four records are turned at a
   /// time from rows to columns.
-  void set(HoleBatch& holes, std::span<const std::uint32_t> walked) const {
+  void set(HoleBatch& holes, [[maybe_unused]] Attributes& attributes,
+           std::span<const std::uint32_t> walked) const {
+    if constexpr (kAttributes)
+      for (std::size_t lane = 0; lane < walked.size(); ++lane) {
+        const HoleStar& star = walked_[walked[lane]];
+        const std::size_t n = star.neighbours();
+        state_.attributes->set(attributes, lane, star.all_edges(), n, star.sides);
+        for (std::size_t b = 1; b < n; ++b)
+          for (std::size_t a = 0; a < b; ++a)
+            holes.barred[HoleBatch::pair(a, b)][lane] = star.sides.cross(a, b) ? kNone : 0.0f;
+      }
     alignas(16) std::array<float, 4> unused;
     for (std::size_t lane = 0; lane < walked.size(); lane += 4) {
       std::array<const HoleStar*, 4> stars;
@@ -315,6 +365,7 @@ class VertexRemovals {
   void attempt(Removal& removal) {
     const HoleStar& star = *removal.star;
     const std::uint32_t v = star.vertex;
+    if (!keeps_seams(star)) return park(v, Legality::kSeam);
     if (too_far(v, removal.error)) return park(v, Legality::kError);
     if (is_pillow(star)) return park(v, Legality::kLink);
     for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
@@ -337,6 +388,12 @@ class VertexRemovals {
     return star.edges == 3 && (beyond(star, 0) >> 2) == (beyond(star, 1) >> 2);
   }
 
+  [[nodiscard]] bool keeps_seams([[maybe_unused]] const HoleStar& star) const {
+    if constexpr (kAttributes)
+      return state_.attributes->wedges().keeps_seams(mesh_, star.all_edges(), star.sides);
+    return true;
+  }
+
   /// Of a removal that makes no edge which is there.
   [[nodiscard]] Legality judge(const Removal& removal) {
     const HoleStar& star = *removal.star;
@@ -349,13 +406,21 @@ class VertexRemovals {
   /// What the queue holds a vertex under; kNone when it can not go.
   [[nodiscard]] float rank(const HoleStar& star, std::size_t lane) {
     const float error = holes_.error[lane];
-    if (state_.criteria == nullptr || !state_.criteria->ranks() || !(error < kNone)) return error;
+    if (!(error < kNone)) return error;
+    if (state_.criteria == nullptr || !state_.criteria->ranks())
+      return error + error_of_attributes(attributes_, lane);
     return cost_of(removal_of(star, lane));
   }
   [[nodiscard]] float cost_of(const Removal& removal) {
-    if (state_.criteria == nullptr || !state_.criteria->ranks()) return removal.error;
+    const float error = removal.error + removal.of_attributes;
+    if (state_.criteria == nullptr || !state_.criteria->ranks()) return error;
     take_faces(*removal.star, removal.triangles);
-    return state_.criteria->cost(removal.error, vertices_[removal.star->vertex].weight, faces_);
+    return state_.criteria->cost(error, vertices_[removal.star->vertex].weight, faces_);
+  }
+  [[nodiscard]] static float error_of_attributes([[maybe_unused]] const Attributes& attributes,
+                                                 [[maybe_unused]] std::size_t lane) {
+    if constexpr (kAttributes) return attributes.error[lane];
+    return 0;
   }
 
   [[nodiscard]] bool meets_criteria(const HoleStar& star, const Triangles& triangles) {
@@ -392,9 +457,10 @@ class VertexRemovals {
     faces_.length2 = length2 / static_cast<double>(star.neighbours());
     for (const std::uint32_t h : std::span(star.edge).first(star.edges))
       if (!mesh_.is_ghost(h)) faces_.before.push_back(face_of(mesh_, h >> 2));
+    const std::size_t first = first_face(star);
     for (const auto& corners : triangles.all()) {
       if (corners[2] == star.neighbours()) continue;  // closes the boundary
-      Star::Face face{{}, star.edge[faces_.after.size()] >> 2};
+      Star::Face face{{}, star.edge[(first + faces_.after.size()) % (star.edges - 1)] >> 2};
       for (std::size_t i = 0; i < 3; ++i)
         face.corner[i] = point_of(vertices_[star.target[corners[i]]].position);
       faces_.after.push_back(face);
@@ -411,10 +477,11 @@ class VertexRemovals {
   void avoid_existing(Removal& removal) {
     const HoleStar& star = *removal.star;
     const auto walked = static_cast<std::uint32_t>(index_of(star));
-    set(other_, std::span(&walked, 1));
+    set(other_, other_attributes_, std::span(&walked, 1));
     while (bar_existing(star, removal.triangles)) {
-      fill_holes(other_, star.neighbours(), state_.limits.cos_deviation);
+      fill(other_, other_attributes_, star.neighbours());
       removal.error = other_.error[0];
+      removal.of_attributes = error_of_attributes(other_attributes_, 0);
       if (!(removal.error < kNone)) break;
       removal.triangles = triangles_of(other_, 0, star);
       removal.heirs = heirs_of(other_, 0, star);
@@ -432,7 +499,12 @@ class VertexRemovals {
   }
 
   [[nodiscard]] Removal removal_of(const HoleStar& star, std::size_t lane) const {
-    return {&star, holes_.error[lane], triangles_of(holes_, lane, star), heirs_of(holes_, lane, star), false};
+    return {&star,
+            holes_.error[lane],
+            error_of_attributes(attributes_, lane),
+            triangles_of(holes_, lane, star),
+            heirs_of(holes_, lane, star),
+            false};
   }
 
   [[nodiscard]] static Triangles triangles_of(const HoleBatch& holes, std::size_t lane,
@@ -450,6 +522,10 @@ class VertexRemovals {
       if (b > a + 1) parts[left++] = {a, b};
       if (c > b + 1) parts[left++] = {b, c};
     }
+    if constexpr (kAttributes)
+      if (star.sides.parted)
+        std::stable_partition(triangles.of.begin(), triangles.of.begin() + triangles.count,
+                              [&](const Triangle& t) { return star.sides.of(t[2]) == 1; });
     return triangles;
   }
 
@@ -538,13 +614,24 @@ class VertexRemovals {
       if (share > most) heir = r;
       most = std::max(most, share);
       absorb(vertices_[r], gone, share);
+      if constexpr (kAttributes)
+        state_.attributes->hand_on(star.all_edges(), star.sides, removal.heirs.neighbour[i], share);
     }
     if (gone.weight > 0)
       state_.outcome.error2 = std::max(state_.outcome.error2,
                                        static_cast<double>(removal.error) / static_cast<double>(gone.weight));
+    if constexpr (kAttributes) {
+      if (const float weight = state_.attributes->weight(star.vertex); weight > 0)
+        state_.outcome.attribute_error2 =
+            std::max(state_.outcome.attribute_error2,
+                     static_cast<double>(removal.of_attributes) / static_cast<double>(weight));
+      state_.attributes->fill_hole(star.all_edges(), star.neighbours(), star.sides, removal.triangles.all(),
+                                   first_face(star));
+    }
     if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(faces_);
-    const auto faces = mesh_.fill_hole(std::span(star.edge).first(star.edges), removal.triangles.all());
+    const auto faces = mesh_.fill_hole(star.all_edges(), removal.triangles.all(), first_face(star));
     gone.leading = CollapseVertex::kGone | heir;
+    if (state_.keep_events) keep_faces(removal);
     if (state_.keep_events)
       state_.outcome.events.push_back({vertices_[heir].source & CollapseVertex::kSourceMask,
                                        gone.source & CollapseVertex::kSourceMask, vertices_[heir].position,
@@ -569,6 +656,28 @@ class VertexRemovals {
     }
   }
 
+  /// The new faces, which are in the mesh, as part of the step that is next.
+  void keep_faces(const Removal& removal) {
+    const HoleStar& star = *removal.star;
+    const auto step = static_cast<std::uint32_t>(state_.outcome.events.size());
+    std::size_t taken = first_face(star);
+    for (const auto& corners : removal.triangles.all()) {
+      if (corners[2] == star.neighbours()) continue;  // closes the boundary
+      const std::uint32_t h = star.edge[taken % (star.edges - 1)] & ~3u;
+      ++taken;
+      auto& made = state_.outcome.changed_faces.emplace_back();
+      made.step = step;
+      made.face = mesh_.face(h).source;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        made.vertices[i] = vertices_[mesh_.origin(h + i)].source & CollapseVertex::kSourceMask;
+        if constexpr (kAttributes) {
+          const Wedges& wedges = state_.attributes->wedges();
+          made.wedges[i] = wedges.source_corner(wedges[h + i]);
+        }
+      }
+    }
+  }
+
   /// Puts a vertex in the queue again whose star has changed.
   void revive(std::uint32_t v) {
     CollapseVertex& vertex = vertices_[v];
@@ -577,12 +686,19 @@ class VertexRemovals {
     vertex.source &= ~CollapseVertex::kHasParked;
   }
 
-  /// The corners of the triangle that holds v, by v's place in it; on the boundary the ends of the new edge,
-  /// by the point nearest to v.
+  /// The corners of the triangle that holds v, by v's place in it; on a boundary or seam the ends of the new
+  /// edge, by the point nearest to v.
   [[nodiscard]] Heirs heirs_of(const HoleBatch& holes, std::size_t lane, const HoleStar& star) const {
     std::size_t a = 0, c = star.neighbours() - 1;
+    bool on_curve = !star.closed;
+    if constexpr (kAttributes) {
+      if (star.sides.parted) {
+        on_curve = true;
+        c = star.sides.last;
+      }
+    }
     Heirs heirs{{0, static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c)}};
-    if (!star.closed) {
+    if (on_curve) {
       float along = 0, squared = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const float d = holes.ring[c][k][lane] - holes.ring[0][k][lane];
@@ -636,6 +752,8 @@ class VertexRemovals {
   std::array<std::uint32_t, kStars> order_;
   std::array<std::uint32_t, kMost + 2> first_{};  // of each number of neighbours, in order_
   HoleBatch holes_, other_;
+  [[no_unique_address]] Attributes attributes_;  // at holes_
+  [[no_unique_address]] Attributes other_attributes_;
   Star faces_;  // that the removal changes which is looked at
   std::vector<Removal> due_;
   std::vector<Search> searches_;

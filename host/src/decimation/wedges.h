@@ -1,13 +1,34 @@
 // Where attributes are continuous, and where they are not.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "decimation/collapse_mesh.h"
 
 namespace vkmesh::detail {
+
+/// On which sides of the seam through a vertex its neighbours stand, which are counted counter-clockwise from
+/// one end of it: to the other end, `last`, on side 0, and from there on and the first again on side 1. Where
+/// no seam passes, all stand on side 0.
+struct SeamSides {
+  std::size_t last;
+  bool parted;
+
+  [[nodiscard]] std::size_t count() const { return parted ? 2 : 1; }
+  [[nodiscard]] bool has(std::size_t side, std::size_t i) const {
+    return side == 0 ? i <= last : i == 0 || i >= last;
+  }
+  /// Whether the edge of neighbours a < b has these on both sides.
+  [[nodiscard]] bool cross(std::size_t a, std::size_t b) const {
+    return parted && a > 0 && a < last && b > last;
+  }
+  /// Of a triangle no edge of which crosses; `c` is its last corner.
+  [[nodiscard]] std::size_t of(std::size_t c) const { return c <= last ? 0 : 1; }
+};
 
 /// The corners of each vertex in wedges (H. Hoppe, "Efficient implementation of progressive meshes", 1998):
 /// those that follow each other around it with the same attributes. An edge whose sides are of different
@@ -99,6 +120,64 @@ class Wedges {
     for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out))
       if (!mesh.is_ghost(out)) of_[out] = of_[out] == on_left ? of_[CollapseMesh::next(h)] : of_[t];
     marks_[q] |= marks_[p];
+  }
+
+  // What follows is for vertices that go and leave a hole. `edges` are all that leave one which is not fixed,
+  // counter-clockwise, of `neighbours` on the mesh; the apex is the target of the last if of any, and the
+  // first is a seam if any are.
+
+  [[nodiscard]] SeamSides sides(const CollapseMesh& mesh, std::span<const std::uint32_t> edges,
+                                std::size_t neighbours) const {
+    std::size_t last = neighbours - 1;
+    if (!on_seam(mesh.origin(edges[0]))) return {last, false};
+    while (!is_seam(mesh, edges[last])) --last;
+    return {last, true};
+  }
+  /// The vertex's own wedge on a side.
+  [[nodiscard]] std::uint32_t on_side(std::span<const std::uint32_t> edges, const SeamSides& sides,
+                                      std::size_t side) const {
+    return of_[edges[side == 0 ? 0 : sides.last]];
+  }
+  /// That of a neighbour who stands on this side.
+  [[nodiscard]] std::uint32_t of_neighbour(std::span<const std::uint32_t> edges, const SeamSides& sides,
+                                           std::size_t side, std::size_t i) const {
+    if (i != (side == 0 ? sides.last : 0)) return of_[CollapseMesh::next(edges[i])];
+    return of_[CollapseMesh::previous(edges[i > 0 ? i - 1 : edges.size() - 1])];
+  }
+
+  /// The same as for collapses, where triangles fill the hole on each side of a seam for itself, and the edge
+  /// between both is the seam from then on.
+  [[nodiscard]] bool keeps_seams(const CollapseMesh& mesh, std::span<const std::uint32_t> edges,
+                                 const SeamSides& sides) const {
+    const auto across = [&](std::size_t i) { return CollapseMesh::next(edges[i]); };
+    const std::size_t last = sides.last;
+    if (!sides.parted) {
+      const bool is_ear = edges.size() == 3 && mesh.is_ghost(edges[2]);
+      return !is_ear || !is_seam(mesh, across(0));
+    }
+    // Where a side is one face, none takes its place, and the edge across becomes the seam.
+    if (last == 1 && is_curve(mesh, across(0))) return false;
+    if (last + 1 == edges.size() && is_curve(mesh, across(last))) return false;
+    const auto differs = [&](std::size_t i) {
+      return of_neighbour(edges, sides, 0, i) != of_neighbour(edges, sides, 1, i);
+    };
+    return differs(0) || differs(last);
+  }
+
+  /// To be called before the mesh fills the hole with the same.
+  void fill_hole(std::span<const std::uint32_t> edges, std::size_t neighbours, const SeamSides& sides,
+                 std::span<const std::array<std::uint8_t, 3>> triangles, std::size_t first) {
+    std::array<std::array<std::uint32_t, 3>, CollapseMesh::kMostAtHole> made;
+    std::size_t count = 0;
+    for (const auto& corners : triangles) {
+      if (corners[2] == neighbours) continue;  // closes the boundary
+      const std::size_t side = sides.of(corners[2]);
+      for (std::size_t i = 0; i < 3; ++i) made[count][i] = of_neighbour(edges, sides, side, corners[i]);
+      ++count;
+    }
+    for (std::size_t t = 0; t < count; ++t)
+      for (std::uint32_t i = 0; i < 3; ++i)
+        of_[(edges[(first + t) % (edges.size() - 1)] & ~3u) + i] = made[t][i];
   }
 
  private:

@@ -122,7 +122,7 @@ struct DecimateOptions {
   /// boundary, one for each of their faces. Default none.
   std::optional<double> crease_angle;
   double crease_weight = 10.0;  ///< Of these planes. Default 10.
-  /// Attributes, for edge and half-edge collapse. See `decimate`.
+  /// See `decimate`.
   std::vector<DecimateAttribute> attributes;
   /// A number for each corner of the mesh, borrowed: corners at one vertex whose numbers differ are parted by
   /// seams, as those whose attributes differ are (materials, for example). Default none.
@@ -141,7 +141,9 @@ struct DecimateOptions {
   /// the positions, or as a share of the whole mesh's diagonal. The component of most faces always stays.
   /// Default: none goes. Ratios remain those of all faces.
   std::optional<double> prune_size, prune_relative_size;
-  /// Fill Decimated::history. Default off: it takes 28 bytes a collapse.
+  /// Fill Decimated::history and Decimated::changes. Default off: it takes 28 bytes a collapse; 32 more for
+  /// each face that vertex removals make, about four each time; and with attributes 12 for each wedge that
+  /// collapses change, one or two each time, and 4 for each component.
   bool keep_history = false;
 };
 
@@ -177,6 +179,34 @@ struct DecimatedAttributes {
   std::vector<std::uint32_t> source_corner;
 };
 
+/// What the steps of a history do beside moving points: with it the input becomes the result, step by step
+/// and bit by bit, in faces, corners and attributes.
+///
+/// A wedge goes by the corner of the input that DecimatedAttributes::source_corner names, and starts with the
+/// values of that corner. A collapse puts `kept` in the place of `removed` in every face, and the wedges at
+/// both may become others or get new values. A vertex removal gives faces new corners; no values change. Both
+/// take away Collapse::faces. What was pruned is no part of it.
+struct DecimationChanges {
+  /// A face that a vertex removal has given new corners, in their order.
+  struct Face {
+    std::uint32_t step = 0;  ///< Of the history.
+    std::uint32_t face = kInvalid;
+    std::array<std::uint32_t, 3> vertices{kInvalid, kInvalid, kInvalid};
+    std::array<std::uint32_t, 3> wedges{kInvalid, kInvalid, kInvalid};  ///< With attributes.
+  };
+  /// From this collapse on corners of `wedge` are of `into`, which may be the same and has new values.
+  struct Wedge {
+    std::uint32_t step = 0;  ///< Of the history.
+    std::uint32_t wedge = kInvalid, into = kInvalid;
+  };
+  /// The wedge of each corner of the input; empty without attributes and corner_groups.
+  std::vector<std::uint32_t> corners;
+  std::vector<Face> faces;    ///< In order of their steps.
+  std::vector<Wedge> wedges;  ///< The same.
+  /// For each attribute the values that `into` has from then on, one for each of `wedges`.
+  std::vector<std::vector<float>> values;
+};
+
 template <class Point>
 struct BasicDecimated {
   HalfEdgeMesh mesh;
@@ -185,7 +215,7 @@ struct BasicDecimated {
   /// half-edge collapse leaves it where it was.
   std::vector<std::uint32_t> source_vertex;
   /// For each face of `mesh` the face of the input it was; ascending. Its corners keep their order. After
-  /// vertex removal: one of those whose place it has taken.
+  /// vertex removal: one of those whose place it has taken, on its own side of seams.
   std::vector<std::uint32_t> source_face;
   /// For each vertex of the input the vertex of `mesh` that stands for it; kInvalid for isolated ones and
   /// those of pruned components, which are dropped.
@@ -193,6 +223,7 @@ struct BasicDecimated {
   DecimatedAttributes attributes;  ///< Empty without attributes and corner_groups.
   /// Every collapse in order, if asked for.
   std::vector<Collapse<Point>> history;
+  DecimationChanges changes;  ///< The same.
   DecimateStop stop = DecimateStop::kTargetReached;
   /// The largest error of a collapse that was done, in units of the positions (see max_error) and as a share
   /// of the bounding box's diagonal.
@@ -257,6 +288,15 @@ using Decimated = BasicDecimated<Vec3>;
 /// along a seam joins both sides at once; and no collapse is legal that changes which curves the seams and
 /// the boundary form, or leaves a chart between them without a face. Vertices where seams end, meet or reach
 /// the boundary are locked.
+///
+/// Of a vertex that is removed, attributes count where old and new edges cross when seen along the normal: by
+/// the values of both; and at the corners of the triangle below it, which take over what it stands for, each
+/// its share: by what their values differ from that, as in a collapse into them. The best triangulation is
+/// the best for all of it. A vertex of a seam goes along the seam: to the nearest point of the edge that
+/// joins its two neighbours there, which is made and becomes the seam, while each side is filled for itself,
+/// with its own values, and counts for itself; the ends of that edge take over. No value is made that the
+/// input does not have, and each corner of a new face has that of its vertex on its side. No removal is legal
+/// that takes the last face of a chart or the last vertex that a seam differs at.
 ///
 /// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
 /// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
