@@ -75,7 +75,7 @@ struct DecimationState {
 
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 
-/// Removes until a limit is met or nothing is left to remove. `Removals` has, as EdgeCollapses does, fill(),
+/// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does, fill(),
 /// step(), kStep and hold(), which tells what holds the candidates that are left.
 template <class Removals>
 Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {

@@ -274,7 +274,9 @@ class EdgeCollapses {
     std::uint32_t size;                         // kTooLong when there are more
   };
 
-  /// Edges on their way from the queue to their collapse.
+  /// Edges on their way from the queue to their collapse. What a batch waits for from memory comes while the
+  /// batches before it are worked on: four are on their way, one behind the other. What those before it have
+  /// changed meanwhile is known by its marks: such an edge goes back, such a ring is walked again.
   struct Pending {
     std::array<std::uint32_t, Queue::kBatch> ids;  // `count` were taken, of them `live` stay
     std::size_t count = 0, fetched = 0, looked_at = 0, live = 0;
@@ -293,10 +295,12 @@ class EdgeCollapses {
     }
   };
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  /// So few faces need no looking ahead, which makes the order a little less strict.
   static constexpr std::size_t kInCache = 1 << 14;
 
   void take(Pending& b) { b.count = share_->queue.take(b.ids, share_->last); }
 
+  /// The faces of `some` more of those taken.
   void fetch(Pending& b, std::size_t some) {
     const std::size_t end = some < b.count - b.fetched ? b.fetched + some : b.count;
     for (; b.fetched < end; ++b.fetched) prefetch(&mesh_.face(b.ids[b.fetched]));
@@ -320,6 +324,7 @@ class EdgeCollapses {
     }
   }
 
+  /// Tells those that are due from those that go back at what they cost now.
   void evaluate(Pending& b) {
     if (b.count == 0) return;
     std::size_t live = 0;
@@ -412,6 +417,7 @@ class EdgeCollapses {
     }
   }
 
+  /// Tries the edges of the first batch, and in between brings on the others a little.
   void serve(Pending& now, Pending& next, Pending& later, Pending& last) {
     // A ring has six vertices or so.
     const std::size_t walks = 8 * next.walks, looks = later.count, fetches = last.count,

@@ -18,10 +18,10 @@
 
 namespace vkmesh::detail {
 
-/// Edge collapses, the cheapest first. A large surface is divided, and the order is one to an octave: in
-/// rounds, each part does by itself what costs no more than the round's limit, and then one thread does what
-/// lies on the seam between parts. What happens depends on the surface, and not on how many threads there
-/// are. With attributes or criteria a surface is one part.
+/// Edge collapses, the cheapest first. A large surface is divided in parts: in rounds, each part does by
+/// itself what costs no more than the round's limit, and then one thread does what lies on the seam between
+/// them. What happens depends on the surface, and not on how many threads there are. With attributes or
+/// criteria a surface is one part.
 template <class Placement, class Queue, bool kAttributes>
 class PartedCollapses {
  public:
