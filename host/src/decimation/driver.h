@@ -75,8 +75,8 @@ struct DecimationState {
 
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 
-/// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does, fill(),
-/// step(), kStep and hold(), which tells what holds the candidates that are left.
+/// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does,
+/// fill(), step(), kStep and hold(), which tells what holds the candidates that are left.
 template <class Removals>
 Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();

@@ -22,24 +22,40 @@ Cell cell_of(const std::array<float, 3>& position) {
   return cell;
 }
 
+constexpr std::size_t kGrain = std::size_t{1} << 16;
+
+/// How many vertices of each part lie in each layer of cells, by axis.
+struct Counts {
+  explicit Counts(std::size_t parts = 0) : in(parts) {}
+  Counts& operator+=(const Counts& more) {
+    in.resize(std::max(in.size(), more.in.size()));
+    for (std::size_t i = 0; i < more.in.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t c = 0; c < kCells; ++c) in[i][k][c] += more.in[i][k][c];
+    return *this;
+  }
+
+  std::vector<std::array<std::array<std::uint32_t, kCells>, 3>> in;
+};
+
 }  // namespace
 
 std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
   const std::size_t n = mesh.apex();
   std::vector<Cell> cells(n);
   std::vector<std::uint8_t> part(n + 1, 0);
-  parallel_ranges(n, 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(n, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) cells[v] = cell_of(mesh.vertices[v].position);
   });
   // Each part is cut in two halves where it is longest (J. L. Bentley, "Multidimensional binary search trees
   // used for associative searching", 1975), all of one level at once.
-  struct Counts {
-    std::array<std::array<std::uint32_t, kCells>, 3> in{};
-  };
   for (std::size_t level = 1; level < parts; level *= 2) {
-    std::vector<Counts> counts(level);
-    for (std::size_t v = 0; v < n; ++v)
-      for (std::size_t k = 0; k < 3; ++k) ++counts[part[v]].in[k][cells[v][k]];
+    const auto counts = parallel_sum<Counts>(n, kGrain, [&](std::size_t begin, std::size_t end) {
+      Counts some(level);
+      for (std::size_t v = begin; v < end; ++v)
+        for (std::size_t k = 0; k < 3; ++k) ++some.in[part[v]][k][cells[v][k]];
+      return some;
+    });
     struct Cut {
       std::size_t axis = 0;
       std::uint8_t first = 0;  // of the upper half
@@ -48,7 +64,7 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
     for (std::size_t i = 0; i < level; ++i) {
       std::size_t longest = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto& in = counts[i].in[k];
+        const auto& in = counts.in[i][k];
         const auto occupied = [](std::uint32_t count) { return count > 0; };
         const auto low = std::find_if(in.begin(), in.end(), occupied);
         const auto high = std::find_if(in.rbegin(), in.rend(), occupied);
@@ -62,10 +78,12 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
         cuts[i] = {k, static_cast<std::uint8_t>(cell)};
       }
     }
-    for (std::size_t v = 0; v < n; ++v) {
-      const Cut& cut = cuts[part[v]];
-      part[v] = static_cast<std::uint8_t>(2 * part[v] + (cells[v][cut.axis] >= cut.first ? 1 : 0));
-    }
+    parallel_ranges(n, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const Cut& cut = cuts[part[v]];
+        part[v] = static_cast<std::uint8_t>(2 * part[v] + (cells[v][cut.axis] >= cut.first ? 1 : 0));
+      }
+    });
   }
   std::vector<std::uint8_t> labels(part.size());
   for (std::size_t v = 0; v < part.size(); ++v) labels[v] = part[v] | Territory::kInner;
@@ -78,7 +96,7 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
     });
   });
   // Faces hold what is asked most often.
-  parallel_ranges(mesh.half_edge_bound() / 4, 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(mesh.half_edge_bound() / 4, kGrain, [&](std::size_t begin, std::size_t end) {
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
       CollapseMesh::Face& face = mesh.face(4 * f);
       if (!face.alive()) continue;
