@@ -24,6 +24,7 @@
 #include <vkmesh/topology.h>
 
 #include "check.h"
+#include "decimation/collapse_order.h"
 #include "random_manifold.h"
 
 namespace vkmesh::fuzz {
@@ -508,10 +509,15 @@ void fuzz_as(Bytes& bytes) {
   const std::uint8_t how = bytes.next();
   if (how % 4 == 1) options.target_faces = bytes.below(input.corners.size() / 3 + 1);
   const BasicDecimated<Point> whole = run(input, options);
-  if constexpr (std::is_same_v<Point, Vec3>)
+  if constexpr (std::is_same_v<Point, Vec3>) {
+    const auto parted =
+        detail::decimate({input.points, input.corners}, options, detail::CollapseOrder::kParted);
+    require(parted.has_value(), "decimated in parts");
+    require_sound(*parted, input, options);
     if (options.operation == DecimateOperation::kHalfEdgeCollapse && options.attributes.empty() &&
         options.corner_groups.empty())
       fuzz_index_buffer(input, options);
+  }
   if (how % 4 != 0) return;
   // The same up to each vertex count: the state of the run after each of its operations.
   for (std::size_t left = input.used; left > whole.mesh.vertex_count(); --left) {

@@ -89,6 +89,7 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
   for (std::size_t v = 0; v < part.size(); ++v) labels[v] = part[v] | Territory::kInner;
   mesh.parts().for_each([&](const VertexParts::Part& range) {
     range.for_each_face([&](std::uint32_t f) {
+      if (!mesh.alive(4 * f)) return;  // pruned
       const auto& [a, b, c] = mesh.face(4 * f).origin;
       if (part[a] == part[b] && part[b] == part[c]) return;
       for (const std::uint32_t v : {a, b, c})
