@@ -400,7 +400,7 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
           // No triangle across the seam is made, and what it says of edges is no matter of either side.
           const std::int32_t last = attributes.last[l];
           on_first[l] = ic <= last;
-          counts[l] = (ic <= last) | (((ia == 0) | (ia >= last)) & (ib >= last)) ? 1.0f : 0.0f;
+          counts[l] = ((ic <= last) | (((ia == 0) | (ia >= last)) & (ib >= last))) ? 1.0f : 0.0f;
         }
         for (const auto& component : attributes.components) {
           const HoleAttributes::OnSide &one = component.side[0], &other = component.side[1];
@@ -421,7 +421,7 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
           const float x1 = batch.left[ab][l], x2 = batch.left[bc][l], x3 = -batch.left[ac][l];
           const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (last_is_side & (x3 >= 0)));
           const float taken = (x2 * heir_a[l] + x3 * heir_b[l] + x1 * heir_c[l]) / whole[l];
-          const float at_v = holds & (curve.is_none[l] > 0) ? taken : 0.0f;
+          const float at_v = (holds & (curve.is_none[l] > 0)) ? taken : 0.0f;
           attributes.at_v[abc][l] = at_v;
           w.total[abc][l] += at_v;
           const float each = counts[l] * crossing[l] * (w.scale[l] * w.scale[l]);
