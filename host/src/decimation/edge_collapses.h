@@ -372,7 +372,7 @@ class EdgeCollapses {
         b.walked[w].size = gone ? kTooLong : b.steps;
         b.at[left] = out;
         b.walk[left] = w;
-        left += (out != b.start[w]) & !gone ? 1 : 0;
+        left += static_cast<std::size_t>(out != b.start[w]) & static_cast<std::size_t>(!gone);
       }
       b.go_on = left;
       b.walker = end;
