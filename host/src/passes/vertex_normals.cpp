@@ -50,7 +50,9 @@ Result<void> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> posi
         for (std::size_t f = 0; f < block.normals.size(); ++f)
           for (std::size_t i = 0; i < 3; ++i) normals[corners[3 * f + i]] += block.normals[f];
     };
-    std::ranges::fill(normals, Vec3(0.0f));
+    detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+      std::ranges::fill(normals.subspan(begin, end - begin), Vec3(0.0f));
+    });
     detail::parallel_in_order<Block>(mesh.face_count(), 1 << 14, weigh, scatter);
     detail::parallel_ranges(normals.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
       detail::to_unit_vectors(normals.subspan(begin, end - begin));
