@@ -122,7 +122,7 @@ class HostBench : public BenchPlace {
            });
          }},
     };
-    // One thread. Removed is nine tenths of the vertices, so the time of a triangle tells that of a removal.
+    // All cores. Removed is nine tenths of the vertices, so the time of a triangle tells that of a removal.
     for (const auto& [name, operation] :
          {std::pair("decimation by edge collapses", DecimateOperation::kEdgeCollapse),
           std::pair("decimation by half-edge collapses", DecimateOperation::kHalfEdgeCollapse),
