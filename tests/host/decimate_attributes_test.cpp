@@ -409,7 +409,7 @@ TEST_CASE("Each removal of a vertex takes at most one of a seam, whose neighbour
           "[decimate]") {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::size_t on_seams = 0, elsewhere = 0;
-  for (std::uint32_t seed = 0; seed < (test::kSanitized ? 3u : 12u); ++seed) {
+  for (std::uint32_t seed = 1; seed < (test::kSanitized ? 2u : 13u); ++seed) {
     IndexedFaceSet shape = seed % 3 == 0   ? test::icosphere(2)
                            : seed % 3 == 1 ? test::grid(10, 9)
                                            : test::torus(12, 9);
@@ -474,8 +474,8 @@ TEST_CASE("Each removal of a vertex takes at most one of a seam, whose neighbour
     }
     CHECK(left_before.size() < t.mesh.points.size() / 2);
   }
-  CHECK(on_seams > 20);
-  CHECK(elsewhere > 100);
+  CHECK(on_seams > (test::kSanitized ? 5u : 50u));
+  CHECK(elsewhere > (test::kSanitized ? 20u : 400u));
 }
 
 TEST_CASE("A chart of one face at the boundary is not cut off", "[decimate]") {
@@ -492,6 +492,7 @@ TEST_CASE("A chart of one face at the boundary is not cut off", "[decimate]") {
 
 TEST_CASE("Vertices go in the exact order, too, and by criteria, with attributes", "[decimate]") {
   for (const std::uint32_t seed : {3u, 4u, 5u}) {
+    if (test::kSanitized && seed != 4) continue;
     IndexedFaceSet mesh = seed == 4 ? test::grid(24, 20) : test::icosphere(3);
     test::jitter(mesh, 0.01f, seed);
     const Textured t = with_random_charts(std::move(mesh), seed);
