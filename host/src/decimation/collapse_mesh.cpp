@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <numeric>
 
 #include "parallel.h"
@@ -89,6 +90,64 @@ class CollapseMesh::Fan {
   std::vector<std::uint32_t> to_, from_, clockwise_, order_;
 };
 
+/// The same for a few half-edges around an inner vertex, unrolled for each number of them: a loop whose end
+/// nothing foretells costs more than its body.
+class CollapseMesh::SmallFan {
+ public:
+  /// Sets the twins of the half-edges before these if they are found to form one closed fan, which they may
+  /// be even so.
+  bool join(LargeArray<Face>& faces, std::span<const std::uint32_t> leaving) {
+    switch (leaving.size()) {
+      case 3:
+        return join_some<3>(faces, leaving.data());
+      case 4:
+        return join_some<4>(faces, leaving.data());
+      case 5:
+        return join_some<5>(faces, leaving.data());
+      case 6:
+        return join_some<6>(faces, leaving.data());
+      case 7:
+        return join_some<7>(faces, leaving.data());
+      case 8:
+        return join_some<8>(faces, leaving.data());
+      default:
+        return false;
+    }
+  }
+
+ private:
+  template <std::uint32_t kCount>
+  bool join_some(LargeArray<Face>& faces, const std::uint32_t* leaving) {
+    std::array<std::uint32_t, kCount> to, from, clockwise;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const Face& face = faces[leaving[i] >> 2];
+      to[i] = face.origin[CollapseMesh::kNextCorner[leaving[i] & 3u]];
+      from[i] = face.origin[CollapseMesh::kPreviousCorner[leaving[i] & 3u]];
+      table_[from[i] % kTable] = static_cast<std::uint8_t>(i);
+    }
+    constexpr std::uint32_t kAll = (1u << kCount) - 1;
+    std::uint32_t found = 0, seen = 0, at = 0;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const std::uint32_t j = table_[to[i] % kTable] % 8;
+      clockwise[i] = j < kCount ? j : 0;
+      found |= static_cast<std::uint32_t>(from[clockwise[i]] == to[i]) << clockwise[i];
+    }
+    for (std::uint32_t k = 0; k < kCount; ++k) {
+      seen |= 1u << at;
+      at = clockwise[at];
+    }
+    if ((found & seen) != kAll) return false;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const std::uint32_t h = leaving[clockwise[i]];
+      faces[leaving[i] >> 2].twin[leaving[i] & 3u] = (h & ~3u) | CollapseMesh::kPreviousCorner[h & 3u];
+    }
+    return true;
+  }
+
+  static constexpr std::uint32_t kTable = 256;
+  std::array<std::uint8_t, kTable> table_{};  // by the low bits of `from`
+};
+
 bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
                          std::vector<std::uint32_t>& leading) {
   face_count_ = corners.size() / 3;
@@ -107,11 +166,12 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
   parts_ = VertexParts(vertex_count, corners);
 
   // The half-edges that leave each vertex, where the vertices will be: that is memory to be had at no cost.
-  constexpr std::size_t kAhead = 64, kWords = sizeof(CollapseVertex) / sizeof(std::uint32_t);
+  constexpr std::size_t kUsual = 6, kAhead = 64, kTail = kAhead + kUsual;  // what most vertices have
+  constexpr std::size_t kWords = sizeof(CollapseVertex) / sizeof(std::uint32_t);
   vertices =
-      LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners.size() + kAhead + kWords - 1) / kWords));
+      LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners.size() + kTail + kWords - 1) / kWords));
   auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
-  for (std::size_t i = 0; i < kAhead; ++i) leaving[corners.size() + i] = 0;
+  for (std::size_t i = 0; i < kTail; ++i) leaving[corners.size() + i] = 0;
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
   parts_.for_each([&](const VertexParts::Part& part) {
     part.for_each_face([&](std::uint32_t f) {
@@ -149,26 +209,24 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
   const auto fans = parallel_sum<Fans>(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
     Fans found;
     Fan fan(most);
+    SmallFan small_fan;
     std::size_t first = begin == 0 ? 0 : ends[begin - 1];
     for (std::size_t v = begin; v < end && found.single; first = ends[v++]) {
       const std::size_t count = ends[v] - first;
-      leading[v] = count == 0 ? kInvalid : leaving[first + count - 1];
-      if (count == 0) continue;
+      const std::uint32_t* const at = leaving + first;
+      leading[v] = count == 0 ? kInvalid : at[count - 1];
+      for (std::size_t i = 0; i < kUsual; ++i) prefetch(&faces_[at[kAhead + i] / 4]);
+      if (count == 0 || small_fan.join(faces_, {at, count})) continue;
       for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t h = leaving[first + i], n = next(h), p = previous(h);
-        const std::uint32_t ahead = leaving[first + i + kAhead];
-        prefetch(&corners[ahead - ahead / 4]);
-        prefetch(&faces_[ahead / 4]);
-        fan.set(i, corners[n - n / 4], corners[p - p / 4]);
+        const std::uint32_t n = next(at[i]), p = previous(at[i]);
+        fan.set(i, origin(n), origin(p));
       }
       found.single = fan.match(count);
-      if (!found.single) break;
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t h = leaving[first + i], j = fan.clockwise(i);
-        if (j == kInvalid)
-          found.boundary.push_back(h);
+      for (std::size_t i = 0; i < count && found.single; ++i) {
+        if (const std::uint32_t j = fan.clockwise(i); j == kInvalid)
+          found.boundary.push_back(at[i]);
         else
-          faces_[h >> 2].twin[h & 3u] = previous(leaving[first + j]);
+          faces_[at[i] >> 2].twin[at[i] & 3u] = previous(at[j]);
       }
     }
     return found;

@@ -61,14 +61,19 @@ class CollapseMesh {
  public:
   struct alignas(32) Face {
     std::array<std::uint32_t, 3> origin;
-    /// Bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked; bit 8 + i: its origin is on
-    /// the seam between parts.
+    /// Bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked; bit 8 + i: an end of it is
+    /// on the seam between parts.
     std::uint32_t tags;
     std::array<std::uint32_t, 3> twin;
     std::uint32_t source;  // its number in the input
 
     [[nodiscard]] bool alive() const { return origin[0] != kInvalid; }
   };
+
+  static constexpr unsigned kSeamShift = 8;  // of the tags
+
+  /// Where the half-edge of a face after that at a corner starts, and the one before it.
+  static constexpr std::array<std::uint8_t, 4> kNextCorner = {1, 2, 0, 0}, kPreviousCorner = {2, 0, 1, 0};
 
   static constexpr std::size_t kMaxFaces = std::size_t{1} << 29;
   static constexpr std::size_t kMaxVertices = std::size_t{1} << 28;
@@ -109,6 +114,8 @@ class CollapseMesh {
   [[nodiscard]] std::uint32_t twin(std::uint32_t h) const { return faces_[h >> 2].twin[h & 3u]; }
   /// The next half-edge that leaves the same vertex, counter-clockwise.
   [[nodiscard]] std::uint32_t around_vertex(std::uint32_t h) const { return twin(previous(h)); }
+  /// For loops that read them often; half-edge h is of face h / 4.
+  [[nodiscard]] const Face* faces() const { return faces_.data(); }
   [[nodiscard]] Face& face(std::uint32_t h) { return faces_[h >> 2]; }
   [[nodiscard]] const Face& face(std::uint32_t h) const { return faces_[h >> 2]; }
   [[nodiscard]] bool alive(std::uint32_t h) const { return face(h).alive(); }
@@ -129,16 +136,28 @@ class CollapseMesh {
     face(t).tags &= ~(16u << (t & 3u));
   }
 
+  static constexpr std::uint32_t kNoneQueued = 0, kOneQueued = 1, kBothQueued = 2;
+  /// Two half-edges have become the two of one edge, which is not parked, and queued by one of them, g in
+  /// doubt. Tells what there was before. With no jump: nothing foretells it. Edges to the apex are left
+  /// alone.
+  std::uint32_t make_one(std::uint32_t g, std::uint32_t t) {
+    Face &one = face(g), &other = face(t);
+    if (one.origin[g & 3u] == apex_ || other.origin[t & 3u] == apex_) return kOneQueued;
+    const std::uint32_t has_g = one.tags >> (g & 3u) & 1u, has_t = other.tags >> (t & 3u) & 1u;
+    one.tags = (one.tags | (1 - (has_g | has_t)) << (g & 3u)) & ~(16u << (g & 3u));
+    other.tags &= ~((has_g & has_t) << (t & 3u)) & ~(16u << (t & 3u));
+    return has_g + has_t;
+  }
+
   /// Whether an end of the edge is on the seam between parts.
   [[nodiscard]] bool at_seam(std::uint32_t h) const {
-    const std::uint32_t i = h & 3u, n = next(h) & 3u;
-    return (face(h).tags & (256u << i | 256u << n)) != 0;
+    return (face(h).tags >> kSeamShift >> (h & 3u) & 1u) != 0;
   }
   /// Of a vertex that is not isolated. O(valence).
   void set_on_seam(std::uint32_t v) {
     std::uint32_t h = vertices[v].leading;
     do {
-      face(h).tags |= 256u << (h & 3u);
+      face(h).tags |= (1u << (h & 3u) | 1u << kPreviousCorner[h & 3u]) << kSeamShift;
       h = around_vertex(h);
     } while (h != vertices[v].leading);
   }
@@ -195,6 +214,7 @@ class CollapseMesh {
   }
 
   class Fan;
+  class SmallFan;
   bool close(std::span<const std::uint32_t> boundary);
 
   LargeArray<Face> faces_;

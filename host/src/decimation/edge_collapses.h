@@ -23,6 +23,7 @@
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
 #include "decimation/face_turns.h"
+#include "decimation/four_rows.h"
 #include "decimation/star.h"
 #include "decimation/territories.h"
 #include "parallel.h"
@@ -93,9 +94,9 @@ class EdgeCollapses {
   /// About how many removals one step tries.
   static constexpr std::size_t kStep = Queue::kBatch;
 
-  /// Calls put(half-edge, cost) for all edges.
-  template <class Put>
-  void fill(Put&& put) {
+  /// Calls prepare(face) for all faces on any threads, and then put(half-edge, cost) for all edges.
+  template <class Prepare, class Put>
+  void fill(Prepare&& prepare, Put&& put) {
     constexpr std::uint32_t kAhead = 64;
     constexpr std::size_t kGrain = 1 << 12;
     struct Block {
@@ -112,6 +113,7 @@ class EdgeCollapses {
         for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin)
           prefetch(&vertices_[v]);
         if (!mesh_.alive(4 * f)) continue;
+        prepare(mesh_.face(4 * f));
         for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
           const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
           mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);
@@ -303,25 +305,41 @@ class EdgeCollapses {
   /// The faces of `some` more of those taken.
   void fetch(Pending& b, std::size_t some) {
     const std::size_t end = some < b.count - b.fetched ? b.fetched + some : b.count;
-    for (; b.fetched < end; ++b.fetched) prefetch(&mesh_.face(b.ids[b.fetched]));
+    const CollapseMesh::Face* const faces = mesh_.faces();
+    for (std::size_t i = b.fetched; i < end; ++i) prefetch(&faces[b.ids[i] >> 2]);
+    b.fetched = end;
   }
 
   /// At `some` more of those taken.
   void look_at(Pending& b, std::size_t some) {
     // Conditions that cannot be foretold count, and do not jump.
     const std::size_t end = some < b.count - b.looked_at ? b.looked_at + some : b.count;
-    for (; b.looked_at < end; ++b.looked_at) {
-      const std::uint32_t h = b.ids[b.looked_at];
-      b.ids[b.live] = h;
-      const bool live = mesh_.alive(h) && mesh_.queued(h);
-      if (live && !is_mine(h)) [[unlikely]] {
+    const std::uint32_t seam = share_->territory.is_part() ? 1u << CollapseMesh::kSeamShift : 0;
+    const CollapseMesh::Face* const faces = mesh_.faces();
+    const CollapseVertex* const vertices = vertices_.data();
+    std::size_t kept = b.live, i = b.looked_at;
+    for (; i < end; ++i) {
+      const std::uint32_t h = b.ids[i], corner = h & 3u;
+      const CollapseMesh::Face& face = faces[h >> 2];
+      const std::uint32_t tags = face.tags >> corner, is = tags & static_cast<std::uint32_t>(face.alive()),
+                          live = 0 - is;
+      if ((tags & seam & live) != 0) [[unlikely]] {
         share_->handed_on.push_back(h);
         continue;
       }
-      b.live += live ? 1 : 0;
-      prefetch(&vertices_[mesh_.face(h).origin[h & 3u]]);
-      prefetch(&vertices_[mesh_.target(h)]);
+      b.ids[kept] = h;
+      kept += is;
+      prefetch(&vertices[face.origin[corner] & live]);
+      prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & live]);
     }
+    b.looked_at = i;
+    b.live = kept;
+  }
+
+  /// 1 or 0.
+  [[nodiscard]] std::uint32_t is_live(std::uint32_t h) const {
+    const CollapseMesh::Face& face = mesh_.face(h);
+    return face.tags >> (h & 3u) & static_cast<std::uint32_t>(face.alive());
   }
 
   /// Tells those that are due from those that go back at what they cost now.
@@ -330,20 +348,24 @@ class EdgeCollapses {
     std::size_t live = 0;
     for (const std::uint32_t h : std::span(b.ids).first(b.live)) {
       b.ids[live] = h;
-      live += mesh_.alive(h) && mesh_.queued(h) ? 1 : 0;
+      live += is_live(h);
     }
     const auto ids = std::span(b.ids).first(live);
     evaluate(ids);
     const float* const ranks = ranks_of(ids);
     b.evaluated = true;
     b.due_count = 0;
+    // Sorted out with no jump, which could not be foretold.
+    std::array<std::uint8_t, Queue::kBatch> is_due, due, others;
+    for (std::size_t i = 0; i < ids.size(); ++i) is_due[i] = share_->queue.is_due(ids[i], ranks[i]) ? 1 : 0;
+    std::size_t other_count = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      if (share_->queue.is_due(ids[i], ranks[i])) {
-        b.due[b.due_count++] = due_of(i, ids[i]);
-      } else {
-        share_->queue.insert(ids[i], ranks[i]);
-      }
+      due[b.due_count] = others[other_count] = static_cast<std::uint8_t>(i);
+      b.due_count += is_due[i];
+      other_count += 1u - is_due[i];
     }
+    for (std::size_t i = 0; i < b.due_count; ++i) b.due[i] = due_of(due[i], ids[due[i]]);
+    for (const std::uint8_t i : std::span(others).first(other_count)) share_->queue.insert(ids[i], ranks[i]);
     b.walks = 2 * b.due_count;
     b.walker = b.go_on = b.steps = 0;
     for (std::size_t i = 0; i < b.due_count; ++i) {
@@ -357,22 +379,27 @@ class EdgeCollapses {
 
   /// Walks around the ends of all due edges, one step of each in turn: one waits for all. `some` more steps.
   void walk(Pending& b, std::size_t some) {
+    const CollapseMesh::Face* const faces = mesh_.faces();
+    const CollapseVertex* const vertices = vertices_.data();
     while (some > 0 && b.walks > 0) {
       const std::size_t end = some < b.walks - b.walker ? b.walker + some : b.walks;
       some -= end - b.walker;
       std::size_t left = b.go_on;
+      const std::uint32_t steps = b.steps;
       for (std::size_t i = b.walker; i < end; ++i) {
-        const std::uint32_t w = b.walk[i], before = CollapseMesh::previous(b.at[i]), out = mesh_.twin(before),
-                            v = mesh_.origin(before);
-        prefetch(&vertices_[v]);
-        prefetch(&mesh_.face(out));
-        b.walked[w].vertex[b.steps] = v;
+        const std::uint32_t w = b.walk[i], at = b.at[i], corner = CollapseMesh::kPreviousCorner[at & 3u];
+        const CollapseMesh::Face& face = faces[at >> 2];
+        const std::uint32_t out = face.twin[corner], v = face.origin[corner];
+        prefetch(&vertices[v]);
+        prefetch(&faces[out >> 2]);
+        Walked& walked = b.walked[w];
+        walked.vertex[steps] = v;
         // What an earlier batch takes away meanwhile leads to where it lay.
-        const bool gone = v == kInvalid;
-        b.walked[w].size = gone ? kTooLong : b.steps;
+        const std::uint32_t gone = v == kInvalid ? kTooLong : 0;
+        walked.size = steps | gone;
         b.at[left] = out;
         b.walk[left] = w;
-        left += static_cast<std::size_t>(out != b.start[w]) & static_cast<std::size_t>(!gone);
+        left += static_cast<std::size_t>(out != b.start[w]) & static_cast<std::size_t>(gone == 0);
       }
       b.go_on = left;
       b.walker = end;
@@ -417,17 +444,20 @@ class EdgeCollapses {
     }
   }
 
+  /// Of what is taken a fifth is due, and a ring has six vertices or so. Numbers that stay the same can be
+  /// foretold.
+  static constexpr std::size_t kLooks = 6, kWalkSteps = 16;
+
   /// Tries the edges of the first batch, and in between brings on the others a little.
   void serve(Pending& now, Pending& next, Pending& later, Pending& last) {
-    // A ring has six vertices or so.
-    const std::size_t walks = 8 * next.walks, looks = later.count, fetches = last.count,
-                      all = std::max<std::size_t>(now.due_count, 1);
     for (; now.tried < now.due_count && !share_->state.reached(); ++now.tried) {
       attempt(now, now.tried);
-      walk(next, walks / all + 1);
-      look_at(later, looks / all + 1);
-      fetch(last, fetches / all + 1);
+      walk(next, kWalkSteps);
+      look_at(later, kLooks);
+      fetch(last, kLooks);
     }
+    for (const std::uint32_t h : std::span(again_).first(again_count_)) enqueue_now(h);
+    again_count_ = 0;
     walk(next, kAll);
     look_at(later, kAll);
     fetch(last, kAll);
@@ -443,7 +473,8 @@ class EdgeCollapses {
     return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
   }
 
-  /// The neighbours of a vertex but one, counter-clockwise.
+  /// The neighbours of a vertex but one, counter-clockwise. What follows up to a multiple of kWalked is
+  /// there, too.
   using Ring = std::span<const std::uint32_t>;
   struct Rings {
     Ring p, q;
@@ -454,7 +485,9 @@ class EdgeCollapses {
     ring.clear();
     for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out))
       ring.push_back(mesh_.target(out));
-    return ring;
+    const std::size_t size = ring.size();
+    ring.resize((size + kWalked - 1) / kWalked * kWalked);
+    return Ring(ring).first(size);
   }
 
   void attempt(const Pending& b, std::size_t i) {
@@ -497,7 +530,7 @@ class EdgeCollapses {
       if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
     if (exceeds_error(p, q, geometric_cost(p, q, due))) return Legality::kError;
     rings = rings_of(b, i);
-    if (!link_condition(rings, q)) return Legality::kLink;
+    if (!link_condition(rings)) return Legality::kLink;
     if (turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x,
                           share_->state.limits.cos_deviation))
       return Legality::kFoldOver;
@@ -542,23 +575,18 @@ class EdgeCollapses {
   }
 
   /// p and q share two neighbours, those across the edge's faces, and the four are no tetrahedron. Each ring
-  /// starts with one of the two and ends with the other.
-  [[nodiscard]] bool link_condition(const Rings& rings, std::uint32_t q) {
+  /// starts with one of the two and ends with the other. No two edges join the same vertices.
+  [[nodiscard]] bool link_condition(const Rings& rings) {
     if (rings.p.front() == rings.p.back()) return false;
     if (rings.p.size() == 2 && rings.q.size() == 2) return false;
-    const Ring inner_p = rings.p.subspan(1, rings.p.size() - 2),
-               inner_q = rings.q.subspan(1, rings.q.size() - 2);
-    std::uint64_t seen = 0;  // a set of hashes: most rings need no second look
-    const auto bit = [](std::uint32_t v) { return std::uint64_t{1} << (v * 0x9e3779b1u >> 26); };
-    for (const std::uint32_t v : inner_p) seen |= bit(v);
-    const auto in_p = [&](std::uint32_t v) {
-      return (seen & bit(v)) != 0 && std::find(inner_p.begin(), inner_p.end(), v) != inner_p.end();
-    };
-    if (in_p(q)) return false;  // two edges between p and q
-    if (inner_p.size() <= 64) return std::none_of(inner_q.begin(), inner_q.end(), in_p);
-    sorted_.assign(inner_p.begin(), inner_p.end());
+    // The usual number of vertices at once. Those beyond the inner ones, whatever they are, are seldom the
+    // same.
+    if (std::max(rings.p.size(), rings.q.size()) <= 8 + 2 &&
+        !any_equal(rings.p.data() + 1, rings.q.data() + 1))
+      return true;
+    sorted_.assign(rings.p.begin() + 1, rings.p.end() - 1);
     std::sort(sorted_.begin(), sorted_.end());
-    return std::none_of(inner_q.begin(), inner_q.end(), [&](std::uint32_t v) {
+    return std::none_of(rings.q.begin() + 1, rings.q.end() - 1, [&](std::uint32_t v) {
       return std::binary_search(sorted_.begin(), sorted_.end(), v);
     });
   }
@@ -568,17 +596,17 @@ class EdgeCollapses {
     CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
     const std::array<float, 3> place = place_of(vp, vq, due.end, due.x);
     // Which of the two goes: what was chosen; else that of fewer neighbours, which is less work.
-    bool keep_p =
-        due.end == 0 ? rings.p.size() > rings.q.size() ||
-                           (rings.p.size() == rings.q.size() && (vp.source & CollapseVertex::kSourceMask) <
-                                                                    (vq.source & CollapseVertex::kSourceMask))
-                     : due.end == 1;
+    const std::size_t at_p = rings.p.size(), at_q = rings.q.size();
+    const bool is_first =
+        (vp.source & CollapseVertex::kSourceMask) < (vq.source & CollapseVertex::kSourceMask);
+    bool keep_p = (at_p > at_q) | ((at_p == at_q) & is_first);
+    if (due.end != 0) keep_p = due.end == 1;
     const float geometric = geometric_cost(p, q, due);
     if constexpr (kAttributes) {
       const Wedges& wedges = share_->state.attributes->wedges();
       if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
     }
-    if (keep_p) h = mesh_.twin(h);
+    h ^= (h ^ mesh_.twin(h)) & (0u - static_cast<std::uint32_t>(keep_p));  // its twin, with no jump
     CollapseVertex &kept = keep_p ? vp : vq, &gone = keep_p ? vq : vp;
     const std::uint32_t q_now = keep_p ? p : q;
 
@@ -629,7 +657,8 @@ class EdgeCollapses {
     if (kept.weight > 0)
       share_->state.outcome.error2 = std::max(
           share_->state.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
-    share_->territory.merge(mesh_, keep_p ? q : p, q_now, keep_p ? rings.q : rings.p);
+    if (share_->territory.is_seam())
+      share_->territory.merge(mesh_, keep_p ? q : p, q_now, keep_p ? rings.q : rings.p);
     join(to_a, from_a);
     join(to_b, from_b);
     if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
@@ -649,16 +678,11 @@ class EdgeCollapses {
 
   // Two edges have become one, of the half-edges g and t: one entry is to stand for it.
   void join(std::uint32_t g, std::uint32_t t) {
-    if (mesh_.origin(g) == mesh_.apex() || mesh_.origin(t) == mesh_.apex()) return;
-    mesh_.clear_parked(g);
-    if (mesh_.queued(g)) {
-      if (!mesh_.queued(t)) return;
-      mesh_.clear_queued(t);
-      share_->queue.erase(t);
-    } else if (!mesh_.queued(t)) {
-      mesh_.set_queued(g);
-      enqueue_now(g);
-    }
+    const std::uint32_t state = mesh_.make_one(g, t);
+    if constexpr (Queue::kExact)
+      if (state == CollapseMesh::kBothQueued) share_->queue.erase(t);
+    again_[again_count_] = g;
+    again_count_ += state == CollapseMesh::kNoneQueued ? 1 : 0;
   }
 
   // The first `edges` edges at v cost something else now. A vertex that has absorbed another has the edges of
@@ -739,6 +763,9 @@ class EdgeCollapses {
   std::array<std::unique_ptr<Pending>, 4> pending_ = {
       std::make_unique<Pending>(), std::make_unique<Pending>(), std::make_unique<Pending>(),
       std::make_unique<Pending>()};
+  // Edges to be queued when the batch is done.
+  std::array<std::uint32_t, 2 * Queue::kBatch + 2> again_;
+  std::size_t again_count_ = 0;
   std::vector<std::uint32_t> before_, touched_, sorted_, ring_p_, ring_q_;
   FaceTurns turns_;
   std::uint32_t ring_flags_ = 0;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "decimation/four_rows.h"
 #include "passes/clones.h"
 
 namespace vkmesh::detail {
@@ -10,8 +12,7 @@ namespace {
 
 /// A triangle of less area than this share of its squared sides has no reliable normal.
 constexpr float kDegenerate = 1e-6f;
-/// Faces are looked at so many at a time.
-constexpr std::int32_t kBlock = 16;
+constexpr std::int32_t kBlock = FaceTurns::kBlock;
 /// Cosine of the angle at which neighbours stand against each other.
 constexpr float kAgainst = -0.5f;
 
@@ -94,27 +95,30 @@ std::uint32_t FaceTurns::set(const LargeArray<CollapseVertex>& vertices,
                              std::span<const std::uint32_t> around_q) {
   at_p_ = around_p.size() - 1;
   faces_ = at_p_ + around_q.size() - 1;
-  // Two corners more than faces, and as many more as the lanes of the last block reach.
-  constexpr std::size_t kLanes = kBlock;
-  const std::size_t corners = (faces_ + kLanes - 1) / kLanes * kLanes + 2;
-  if (x_.size() < corners)
-    for (Lanes* lanes : {&x_, &y_, &z_}) lanes->resize(corners + 2 * kLanes);
-  std::uint32_t flags = 0;
-  std::size_t k = 0;
-  const auto add = [&](std::uint32_t v) {
-    const CollapseVertex& vertex = vertices[v];
-    x_[k] = vertex.position[0];
-    y_[k] = vertex.position[1];
-    z_[k] = vertex.position[2];
-    flags |= vertex.source;
-    ++k;
+  const std::size_t corners = faces_ + 2;
+  // Whole blocks are copied, and four corners are turned at a time: what is beyond does not matter.
+  if (ids_.size() < corners + 2 * kBlock) {
+    ids_.resize(2 * corners + 4 * kBlock);
+    for (Lanes* lanes : {&x_, &y_, &z_}) lanes->resize(ids_.size());
+  }
+  std::uint32_t* const ids = ids_.data();
+  const auto copy = [](std::span<const std::uint32_t> from, std::uint32_t* to) {
+    for (std::size_t i = 0; i < from.size(); i += kBlock)
+      std::memcpy(to + i, from.data() + i, kBlock * sizeof(std::uint32_t));
   };
-  for (const std::uint32_t v : around_p) add(v);
-  for (const std::uint32_t v : around_q.subspan(1)) add(v);
-  add(around_p[around_p.size() > 1 ? 1 : 0]);
-  for (Lanes* lanes : {&x_, &y_, &z_}) {
-    float* const l = lanes->data();
-    std::fill(l + k, l + corners, l[k - 1]);
+  copy(around_p, ids);
+  copy(around_q, ids + at_p_);  // which begins where that of p ends
+  for (std::size_t i = 0; i < 4; ++i) ids[faces_ + 1 + i] = around_p[at_p_ > 0 ? 1 : 0];
+  std::uint32_t flags = 0;
+  std::array<float, 4> sources;
+  for (std::size_t k = 0; k < corners; k += 4) {
+    std::array<const void*, 4> rows;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const CollapseVertex& vertex = vertices[ids[k + i]];
+      rows[i] = &vertex;
+      flags |= vertex.source;
+    }
+    turn_four(rows, {&x_[k], &y_[k], &z_[k], sources.data()});
   }
   return flags;
 }

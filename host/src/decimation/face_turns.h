@@ -17,8 +17,11 @@ namespace vkmesh::detail {
 /// faces follow each other. Two corners at the same place, or one at no place, span nothing.
 class FaceTurns {
  public:
+  /// So many faces are looked at at a time.
+  static constexpr std::size_t kBlock = 16;
+
   /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the
-  /// other ends. Returns the flags of all these vertices.
+  /// other ends, and can be read up to a multiple of kBlock. Returns the flags of all these vertices.
   std::uint32_t set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
                     std::span<const std::uint32_t> around_q);
 
@@ -41,6 +44,7 @@ class FaceTurns {
 
   using Lanes = std::vector<float>;
   Lanes x_, y_, z_;  // the corners: those around p, then those around q, and the first two again
+  std::vector<std::uint32_t> ids_;    // of the corners
   std::size_t at_p_ = 0, faces_ = 0;  // faces at p, which come first, and all
 };
 

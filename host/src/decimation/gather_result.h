@@ -1,10 +1,12 @@
 // What is left after decimation, in the order of the input.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,11 +32,19 @@ std::vector<std::uint32_t> collect(std::size_t count, F&& f) {
       return *this;
     }
   };
-  return parallel_sum<List>(count, 1 << 15,
+  constexpr std::size_t kGrain = 1 << 15, kBlock = 1 << 10;
+  return parallel_sum<List>(count, kGrain,
                             [&](std::size_t begin, std::size_t end) {
                               List list;
-                              for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-                                if (f(i)) list.all.push_back(i);
+                              std::array<std::uint32_t, kBlock> some;
+                              for (std::size_t first = begin; first < end; first += kBlock) {
+                                std::size_t found = 0;  // with no jump, which could not be foretold
+                                for (std::size_t i = first; i < std::min(first + kBlock, end); ++i) {
+                                  some[found] = static_cast<std::uint32_t>(i);
+                                  found += f(some[found]) ? 1 : 0;
+                                }
+                                list.all.insert(list.all.end(), some.begin(), some.begin() + found);
+                              }
                               return list;
                             })
       .all;
@@ -73,24 +83,43 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   const std::size_t n = points.size();
   constexpr std::uint32_t kMask = CollapseVertex::kSourceMask;
   const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
-  std::vector<std::uint32_t>& new_vertex = result.vertex_map;
-  new_vertex.assign(n, kInvalid);
-  std::vector<std::uint32_t> absorbed(n, kInvalid);  // by which vertex, both of the input
+  // The numbers in the order of the input of records, whose own numbers these are.
+  const auto in_input_order = [&](const std::vector<std::uint32_t>& records, std::size_t count,
+                                  auto&& source) {
+    if (in_order) return records;
+    std::vector<bool> is(count, false);
+    for (const std::uint32_t r : records) is[source(r)] = true;
+    std::vector<std::uint32_t> sources;
+    sources.reserve(records.size());
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (is[i]) sources.push_back(i);
+    return sources;
+  };
+  // Of each vertex the one that absorbed it, both of the input; in the end the one that stands for it, or
+  // itself.
+  std::vector<std::uint32_t> by(n);
   const std::vector<std::uint32_t> alive = collect(n, [&](std::uint32_t v) {
     const CollapseVertex& vertex = vertices[v];
-    if (vertex.alive()) {
-      new_vertex[vertex.source & kMask] = 0;
-    } else if (vertex.leading != kInvalid) {
-      const std::uint32_t by = vertex.leading & ~CollapseVertex::kGone;
-      absorbed[vertex.source & kMask] = source_of(by);
-    }
+    const std::uint32_t source = vertex.source & kMask;
+    const bool absorbed = !vertex.alive() && vertex.leading != kInvalid;
+    by[source] = absorbed ? source_of(vertex.leading & ~CollapseVertex::kGone) : source;
     return vertex.alive();
   });
-  for (std::uint32_t v = 0; v < n; ++v) {
-    if (new_vertex[v] == kInvalid) continue;
-    new_vertex[v] = static_cast<std::uint32_t>(result.source_vertex.size());
-    result.source_vertex.push_back(v);
+  result.source_vertex = in_input_order(alive, n, source_of);
+  for (bool changed = true; changed;) {
+    std::uint32_t change = 0;
+    for (std::uint32_t& b : by) {
+      const std::uint32_t next = by[b];
+      change |= b ^ next;
+      b = next;
+    }
+    changed = change != 0;
   }
+  std::vector<std::uint32_t> new_vertex(n, kInvalid);
+  for (std::uint32_t i = 0; i < result.source_vertex.size(); ++i) new_vertex[result.source_vertex[i]] = i;
+  result.vertex_map.resize(n);
+  for (std::uint32_t v = 0; v < n; ++v) result.vertex_map[v] = new_vertex[by[v]];
+  by = std::vector<std::uint32_t>();
   result.positions.resize(alive.size());
   for (const std::uint32_t v : alive) {
     const CollapseVertex& vertex = vertices[v];
@@ -98,32 +127,15 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     result.positions[new_vertex[source]] =
         vertex.has(CollapseVertex::kMoved) ? point_of<Point>(vertex.position, frame) : points[source];
   }
-  // Each vertex that went is found with the one that stands for it in the end.
-  std::vector<std::uint32_t> path;
-  for (std::uint32_t v = 0; v < n; ++v) {
-    std::uint32_t at = v;
-    path.clear();
-    while (absorbed[at] != kInvalid) {
-      path.push_back(at);
-      at = absorbed[at];
-    }
-    for (const std::uint32_t gone : path) {
-      absorbed[gone] = kInvalid;
-      new_vertex[gone] = new_vertex[at];
-    }
-  }
 
-  std::vector<std::uint32_t> new_face(mesh.face_count(), kInvalid);
-  const std::vector<std::uint32_t> alive_faces = collect(mesh.face_count(), [&](std::uint32_t f) {
-    const CollapseMesh::Face& face = mesh.face(4 * f);
-    if (face.alive()) new_face[face.source] = 0;
-    return face.alive();
-  });
-  for (std::uint32_t f = 0; f < new_face.size(); ++f) {
-    if (new_face[f] == kInvalid) continue;
-    new_face[f] = static_cast<std::uint32_t>(result.source_face.size());
-    result.source_face.push_back(f);
-  }
+  const std::vector<std::uint32_t> alive_faces =
+      collect(mesh.face_count(), [&](std::uint32_t f) { return mesh.alive(4 * f); });
+  result.source_face = in_input_order(alive_faces, mesh.face_count(),
+                                      [&](std::uint32_t f) { return mesh.face(4 * f).source; });
+  const auto new_face_of =
+      std::make_unique_for_overwrite<std::uint32_t[]>(mesh.face_count());  // of those alive
+  const std::span new_face(new_face_of.get(), mesh.face_count());
+  for (std::uint32_t i = 0; i < result.source_face.size(); ++i) new_face[result.source_face[i]] = i;
   if (attributes != nullptr) result.attributes = attributes->gather(alive_faces, new_face);
   std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size()),
       leading(result.positions.size(), kInvalid);

@@ -42,12 +42,16 @@ class PartedCollapses {
   void fill() {
     Worker& worker = mine();
     if (parts_.empty()) {
-      worker.fill([&](std::uint32_t h, float cost) { rest_->queue.fill(h, cost); });
+      worker.fill([](CollapseMesh::Face&) {},
+                  [&](std::uint32_t h, float cost) { rest_->queue.fill(h, cost); });
       rest_->queue.start();
       return;
     }
-    const CollapseMesh& mesh = state_.mesh;
-    worker.fill([&](std::uint32_t h, float cost) {
+    CollapseMesh& mesh = state_.mesh;
+    const auto mark = [&](CollapseMesh::Face& face) { mark_seam(labels_, face); };
+    for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
+      if (CollapseMesh::Face& ghost = mesh.face(static_cast<std::uint32_t>(g)); ghost.alive()) mark(ghost);
+    worker.fill(mark, [&](std::uint32_t h, float cost) {
       (mesh.at_seam(h) ? *rest_ : parts_[labels_[mesh.origin(h)] & ~Territory::kInner]->share)
           .queue.insert(h, cost);
     });

@@ -1,6 +1,7 @@
 // Parts of a surface that threads decimate side by side.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,10 +27,10 @@ class Territory {
   /// Of a part.
   [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (part_ | kInner); }
 
-  /// A vertex has absorbed another, which had this ring.
+  [[nodiscard]] bool is_seam() const { return labels_ != nullptr && !is_part(); }
+  /// Of the seam: a vertex has absorbed another, which had this ring.
   void merge(CollapseMesh& mesh, std::uint32_t gone, std::uint32_t kept,
              std::span<const std::uint32_t> ring) {
-    if (labels_ == nullptr || is_part()) return;
     const auto owner = [&](std::uint32_t v) { return labels_[v] & ~kInner; };
     const auto leave = [&](std::uint32_t v) {
       labels_[v] &= ~kInner;
@@ -49,5 +50,14 @@ class Territory {
 /// Labels of vertices, for `parts` compact parts of about as many vertices each; a power of two below kSeam.
 /// O(n log parts).
 [[nodiscard]] std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts);
+
+/// Tells a face which of its edges are at the seam. No part may be at work before all faces know.
+inline void mark_seam(std::span<const std::uint8_t> labels, CollapseMesh::Face& face) {
+  const std::array<std::uint8_t, 3> at = {labels[face.origin[0]], labels[face.origin[1]],
+                                          labels[face.origin[2]]};
+  const std::array<int, 3> inner = {at[0] & at[1], at[1] & at[2], at[2] & at[0]};
+  for (std::uint32_t i = 0; i < 3; ++i)
+    face.tags |= ((inner[i] & Territory::kInner) == 0 ? 1u : 0u) << CollapseMesh::kSeamShift << i;
+}
 
 }  // namespace vkmesh::detail

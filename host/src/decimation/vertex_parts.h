@@ -26,7 +26,7 @@ class VertexParts {
         face_count_(corners.size() / 3),
         blocks_((face_count_ + kBlock - 1) / kBlock) {
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    parts_ = threads == 1 ? 1 : 4 * threads;
+    parts_ = threads;
     parallel_ranges(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const std::size_t first = 3 * kBlock * b, last = std::min(first + 3 * kBlock, corners.size());
@@ -55,14 +55,22 @@ class VertexParts {
     std::uint32_t begin, end;
 
     [[nodiscard]] bool has(std::uint32_t v) const { return v - begin < end - begin; }
-    /// Calls f(face) in ascending order for faces among which are all that have a corner in the part.
+    /// Calls f(begin, end) in ascending order for ranges of faces among which are all that have a corner in
+    /// the part.
     template <class F>
-    void for_each_face(F&& f) const {
+    void for_each_range(F&& f) const {
       for (std::size_t b = 0; b < all.blocks_.size(); ++b) {
         if (all.blocks_[b].high < begin || all.blocks_[b].low >= end) continue;
-        const auto last = static_cast<std::uint32_t>(std::min((b + 1) * kBlock, all.face_count_));
-        for (auto face = static_cast<std::uint32_t>(b * kBlock); face < last; ++face) f(face);
+        f(static_cast<std::uint32_t>(b * kBlock),
+          static_cast<std::uint32_t>(std::min((b + 1) * kBlock, all.face_count_)));
       }
+    }
+    /// The same, face by face.
+    template <class F>
+    void for_each_face(F&& f) const {
+      for_each_range([&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t face = first; face < last; ++face) f(face);
+      });
     }
   };
 
