@@ -24,7 +24,11 @@ constexpr std::uint8_t kInner = Territory::kInner;
 CollapseMesh mesh_of(const IndexedFaceSet& set) {
   CollapseMesh mesh;
   std::vector<std::uint32_t> leading;
-  REQUIRE(mesh.build(set.points.size(), set.corners, leading));
+  const auto face_of = [&](std::size_t f) {
+    const auto corners = set.face(f);
+    return CollapseMesh::Face{{corners[0], corners[1], corners[2]}, 0, {}, static_cast<std::uint32_t>(f)};
+  };
+  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == CollapseMesh::Built::kDone);
   float size = 0;
   for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   for (std::uint32_t v = 0; v < set.points.size(); ++v) {

@@ -148,34 +148,19 @@ class CollapseMesh::SmallFan {
   std::array<std::uint8_t, kTable> table_{};  // by the low bits of `from`
 };
 
-bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
-                         std::vector<std::uint32_t>& leading) {
-  face_count_ = corners.size() / 3;
-  apex_ = static_cast<std::uint32_t>(vertex_count);
-  faces_ = LargeArray<Face>(face_count_ + face_count_ / 16 + 64);
-  std::atomic<bool> simple = true;
+bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading) {
   constexpr std::size_t kGrain = 1 << 14;
-  parallel_ranges(face_count_, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const std::uint32_t a = corners[3 * f], b = corners[3 * f + 1], c = corners[3 * f + 2];
-      if (a == b || b == c || c == a) simple = false;
-      faces_[f] = {{a, b, c}, 0, {}, static_cast<std::uint32_t>(f)};
-    }
-  });
-  if (!simple) return false;
-  parts_ = VertexParts(vertex_count, corners);
-
+  const std::size_t corners = 3 * face_count_;
   // The half-edges that leave each vertex, where the vertices will be: that is memory to be had at no cost.
   constexpr std::size_t kUsual = 6, kAhead = 64, kTail = kAhead + kUsual;  // what most vertices have
   constexpr std::size_t kWords = sizeof(CollapseVertex) / sizeof(std::uint32_t);
-  vertices =
-      LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners.size() + kTail + kWords - 1) / kWords));
+  vertices = LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners + kTail + kWords - 1) / kWords));
   auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
-  for (std::size_t i = 0; i < kTail; ++i) leaving[corners.size() + i] = 0;
+  for (std::size_t i = 0; i < kTail; ++i) leaving[corners + i] = 0;
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
   parts_.for_each([&](const VertexParts::Part& part) {
     part.for_each_face([&](std::uint32_t f) {
-      for (const std::uint32_t v : corners.subspan(3 * std::size_t{f}, 3))
+      for (const std::uint32_t v : faces_[f].origin)
         if (part.has(v)) ++ends[v];
     });
   });
@@ -190,7 +175,7 @@ bool CollapseMesh::build(std::size_t vertex_count, std::span<const std::uint32_t
   parts_.for_each([&](const VertexParts::Part& part) {
     part.for_each_face([&](std::uint32_t f) {
       for (std::uint32_t i = 0; i < 3; ++i) {
-        const std::uint32_t v = corners[3 * std::size_t{f} + i];
+        const std::uint32_t v = faces_[f].origin[i];
         if (part.has(v)) leaving[ends[v]++] = 4 * f + i;
       }
     });

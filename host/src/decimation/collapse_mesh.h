@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -78,12 +79,35 @@ class CollapseMesh {
   static constexpr std::size_t kMaxFaces = std::size_t{1} << 29;
   static constexpr std::size_t kMaxVertices = std::size_t{1} << 28;
 
-  /// Fills the faces, and sets `leading` to a half-edge that leaves each
-  /// vertex, kInvalid where there is none; corners must be < vertex_count. False when the faces form no
-  /// oriented manifold of simple triangles; the mesh is then of no use. O(n), and O(d log d) for each vertex
-  /// of many faces d. The vertices have room, and no values yet.
-  [[nodiscard]] bool build(std::size_t vertex_count, std::span<const std::uint32_t> corners,
-                           std::vector<std::uint32_t>& leading);
+  enum class Built { kDone, kNoSuchVertex, kNoManifold };
+  /// Makes faces of what face_of(f), called on any threads, gives of each but its twins, and sets `leading`
+  /// to a half-edge that leaves each vertex, kInvalid where there is none. Unless corners are below
+  /// vertex_count and the faces form an oriented manifold of simple triangles the mesh is of no use. O(n),
+  /// and O(d log d) for each vertex of many faces d. The vertices have room, and no values yet.
+  template <class FaceOf>
+  [[nodiscard]] Built build(std::size_t vertex_count, std::size_t face_count, FaceOf&& face_of,
+                            std::vector<std::uint32_t>& leading) {
+    face_count_ = face_count;
+    apex_ = static_cast<std::uint32_t>(vertex_count);
+    faces_ = LargeArray<Face>(face_count + face_count / 16 + 64);
+    std::atomic<bool> simple = true, in_range = true;
+    parts_ = VertexParts(vertex_count, face_count, [&](std::size_t begin, std::size_t end) {
+      VertexParts::Range range;
+      bool all_simple = true;
+      for (std::size_t f = begin; f < end; ++f) {
+        const Face face = face_of(f);
+        const auto& [a, b, c] = face.origin;
+        all_simple &= (a != b) & (b != c) & (c != a);
+        for (const std::uint32_t v : face.origin) range.add(v);
+        faces_[f] = face;
+      }
+      if (!all_simple) simple = false;
+      if (range.high >= vertex_count) in_range = false;
+      return range;
+    });
+    if (!in_range) return Built::kNoSuchVertex;
+    return simple && connect(vertex_count, leading) ? Built::kDone : Built::kNoManifold;
+  }
 
   /// For loops over the faces that write to their corners.
   [[nodiscard]] const VertexParts& parts() const { return parts_; }
@@ -212,6 +236,8 @@ class CollapseMesh {
     faces_[a >> 2].twin[a & 3u] = b;
     faces_[b >> 2].twin[b & 3u] = a;
   }
+
+  bool connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading);
 
   class Fan;
   class SmallFan;

@@ -31,6 +31,8 @@ class LazyQueue {
   [[nodiscard]] std::uint32_t bucket() const { return queue_.floor(); }
   /// The first bucket that holds any; kNone when empty.
   [[nodiscard]] std::uint32_t first() const { return queue_.first(); }
+  [[nodiscard]] std::size_t size() const { return queue_.size(); }
+  void reserve(std::size_t more) { queue_.reserve(more); }
   /// All that another holds.
   void absorb(LazyQueue& other) { queue_.absorb(other.queue_); }
 

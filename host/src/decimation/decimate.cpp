@@ -171,6 +171,33 @@ void lock(CollapseMesh& mesh, std::span<const std::uint32_t> corners, const Deci
     if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
 }
 
+/// Builds a mesh whose vertices, and faces by their first vertex, go along Morton's curve; `order` tells
+/// their numbers in the input.
+template <class Position>
+CollapseMesh::Built build_along_curve(CollapseMesh& mesh, std::size_t vertex_count,
+                                      std::span<const std::uint32_t> corners, Position&& position,
+                                      std::vector<std::uint32_t>& order,
+                                      std::vector<std::uint32_t>& leading) {
+  order = morton_order(vertex_count, position);
+  const std::size_t faces = corners.size() / 3;
+  std::vector<std::uint32_t> rank(vertex_count), first(faces), face_order(faces);
+  for (std::uint32_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
+  const auto ranks_of = [&](std::size_t f) -> std::array<std::uint32_t, 3> {
+    return {rank[corners[3 * f]], rank[corners[3 * f + 1]], rank[corners[3 * f + 2]]};
+  };
+  parallel_ranges(faces, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) first[f] = std::ranges::min(ranks_of(f));
+  });
+  counting_sort(
+      vertex_count, faces, [&](std::size_t f) { return first[f]; },
+      [&](std::size_t slot, std::size_t f) { face_order[slot] = static_cast<std::uint32_t>(f); });
+  first = std::vector<std::uint32_t>();
+  const auto face_of = [&](std::size_t f) {
+    return CollapseMesh::Face{ranks_of(face_order[f]), 0, {}, face_order[f]};
+  };
+  return mesh.build(vertex_count, faces, face_of, leading);
+}
+
 template <class Point>
 Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               std::span<const std::uint32_t> corners,
@@ -183,19 +210,9 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   if (corners.size() / 3 > CollapseMesh::kMaxFaces || points.size() > CollapseMesh::kMaxVertices)
     return fail(ErrorCode::kUnsuitable,
                 "decimation takes at most 2^28 vertices, 2^29 faces and boundary edges");
-  std::vector<std::uint8_t> in_use(points.size(), 0);
-  std::atomic<bool> in_range = true;
-  parallel_ranges(corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (const std::uint32_t c : corners.subspan(begin, end - begin)) {
-      if (c >= points.size())
-        in_range.store(false, std::memory_order_relaxed);
-      else
-        std::atomic_ref(in_use[c]).store(1, std::memory_order_relaxed);
-    }
-  });
-  if (!in_range) return fail(ErrorCode::kUsage, "a corner names no point");
-  VKMESH_TRY(const Frame frame, frame_of(points, std::span<const std::uint8_t>(in_use)));
-  in_use = std::vector<std::uint8_t>();  // {} would keep the memory
+  CollapseMesh mesh;
+  Frame frame;
+  std::vector<std::uint32_t> vertex_order, leading;
   const auto local = [&](std::size_t v) {
     std::array<float, 3> x;
     for (int k = 0; k < 3; ++k)
@@ -203,33 +220,26 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
           static_cast<float>((static_cast<double>(points[v][k]) - frame.centre[k]) * frame.scale);
     return x;
   };
-
-  CollapseMesh mesh;
-  std::vector<std::uint32_t> vertex_order, leading;
-  bool manifold = false;
-  if (detail::lacks_locality(points.size(), corners)) {
-    vertex_order = detail::morton_order(points.size(), local);
-    std::vector<std::uint32_t> rank(points.size());
-    for (std::uint32_t i = 0; i < vertex_order.size(); ++i) rank[vertex_order[i]] = i;
-    const std::size_t faces = corners.size() / 3;
-    std::vector<std::uint32_t> face_order(faces), sorted(corners.size());
-    detail::counting_sort(
-        points.size(), faces,
-        [&](std::size_t f) {
-          return std::min({rank[corners[3 * f]], rank[corners[3 * f + 1]], rank[corners[3 * f + 2]]});
-        },
-        [&](std::size_t slot, std::size_t f) {
-          face_order[slot] = static_cast<std::uint32_t>(f);
-          for (std::size_t i = 0; i < 3; ++i) sorted[3 * slot + i] = rank[corners[3 * f + i]];
-        });
-    rank = std::vector<std::uint32_t>();
-    manifold = mesh.build(points.size(), sorted, leading);
-    if (manifold)
-      for (std::uint32_t f = 0; f < faces; ++f) mesh.face(4 * f).source = face_order[f];
-  } else {
-    manifold = mesh.build(points.size(), corners, leading);
+  auto built = CollapseMesh::Built::kNoSuchVertex;
+  if (!lacks_locality(points.size(), corners)) {
+    const auto face_of = [&](std::size_t f) {
+      return CollapseMesh::Face{
+          {corners[3 * f], corners[3 * f + 1], corners[3 * f + 2]}, 0, {}, static_cast<std::uint32_t>(f)};
+    };
+    built = mesh.build(points.size(), corners.size() / 3, face_of, leading);
+    if (built == CollapseMesh::Built::kDone) {
+      VKMESH_TRY(frame, frame_of(points, [&](std::size_t v) { return leading[v] != kInvalid; }));
+    }
+  } else if (std::ranges::all_of(corners, [&](std::uint32_t c) { return c < points.size(); })) {
+    {
+      std::vector<std::uint8_t> in_use(points.size(), 0);
+      for (const std::uint32_t c : corners) in_use[c] = 1;
+      VKMESH_TRY(frame, frame_of(points, [&](std::size_t v) { return in_use[v] != 0; }));
+    }
+    built = build_along_curve(mesh, points.size(), corners, local, vertex_order, leading);
   }
-  if (!manifold)
+  if (built == CollapseMesh::Built::kNoSuchVertex) return fail(ErrorCode::kUsage, "a corner names no point");
+  if (built == CollapseMesh::Built::kNoManifold)
     return fail(ErrorCode::kUnsuitable, "decimation takes oriented manifolds only: consolidate first");
 
   const auto used = parallel_sum<std::size_t>(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -22,9 +22,10 @@ struct Frame {
   double diagonal = 0;  // of the bounding box, in units of the input
 };
 
-/// Of the points that are used. All points must be finite: kUnsuitable.
-template <class Point>
-Result<Frame> frame_of(std::span<const Point> points, std::span<const std::uint8_t> used) {
+/// Of the points that is_used(number), called on any threads, says are used. All points must be finite:
+/// kUnsuitable.
+template <class Point, class IsUsed>
+Result<Frame> frame_of(std::span<const Point> points, IsUsed&& is_used) {
   struct Box {
     DVec3 low{std::numeric_limits<double>::infinity()}, high = -low;
     bool finite = true;
@@ -42,7 +43,7 @@ Result<Frame> frame_of(std::span<const Point> points, std::span<const std::uint8
     for (std::size_t v = begin; v < end; ++v) {
       const Point& p = points[v];
       part.finite &= std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      if (used[v] == 0) continue;
+      if (!is_used(v)) continue;
       for (int k = 0; k < 3; ++k) {
         const double x = p[k];
         part.low[k] = std::min(part.low[k], x);

@@ -158,7 +158,13 @@ class PartedCollapses {
            state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;
   }
   void unite() {
-    for (const auto& part : parts_) rest_->queue.absorb(part->share.queue);
+    std::size_t edges = 0;
+    for (const auto& part : parts_) edges += part->share.queue.size();
+    rest_->queue.reserve(edges);
+    for (auto& part : parts_) {
+      rest_->queue.absorb(part->share.queue);
+      part.reset();  // before the next, for its memory
+    }
     parts_.clear();
     rest_->last = MonotoneQueue::kLast;
   }

@@ -20,23 +20,24 @@ namespace vkmesh::detail {
 class VertexParts {
  public:
   VertexParts() = default;
-  /// Corners must be < vertex_count.
-  VertexParts(std::size_t vertex_count, std::span<const std::uint32_t> corners)
-      : vertex_count_(vertex_count),
-        face_count_(corners.size() / 3),
-        blocks_((face_count_ + kBlock - 1) / kBlock) {
-    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    parts_ = threads;
+  struct Range {
+    std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
+
+    void add(std::uint32_t v) {
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  };
+
+  /// range_of(begin, end), called once for each block of faces on any threads, tells among which vertices
+  /// their corners are.
+  template <class RangeOf>
+  VertexParts(std::size_t vertex_count, std::size_t face_count, RangeOf&& range_of)
+      : vertex_count_(vertex_count), face_count_(face_count), blocks_((face_count + kBlock - 1) / kBlock) {
+    parts_ = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     parallel_ranges(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        const std::size_t first = 3 * kBlock * b, last = std::min(first + 3 * kBlock, corners.size());
-        Range range;
-        for (const std::uint32_t v : corners.subspan(first, last - first)) {
-          range.low = std::min(range.low, v);
-          range.high = std::max(range.high, v);
-        }
-        blocks_[b] = range;
-      }
+      for (std::size_t b = begin; b < end; ++b)
+        blocks_[b] = range_of(kBlock * b, std::min(kBlock * (b + 1), face_count));
     });
   }
 
@@ -76,10 +77,6 @@ class VertexParts {
 
  private:
   static constexpr std::size_t kBlock = 2048;
-  struct Range {
-    std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
-  };
-
   std::size_t vertex_count_ = 0, face_count_ = 0, parts_ = 1;
   std::vector<Range> blocks_;
 };

@@ -22,8 +22,11 @@ class MonotoneQueue {
   MonotoneQueue() = default;
   /// Room for this many entries is made at once, in full chunks and one more for each of a usual number of
   /// buckets.
-  explicit MonotoneQueue(std::size_t capacity) {
-    words_.reserve((capacity / (kChunk - 1) + kUsualBuckets) * kChunk);
+  explicit MonotoneQueue(std::size_t capacity) { reserve(capacity); }
+
+  /// Room for so many entries more.
+  void reserve(std::size_t more) {
+    words_.reserve(words_.size() + (more / (kChunk - 1) + kUsualBuckets) * kChunk);
   }
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
