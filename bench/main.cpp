@@ -155,6 +155,7 @@ Result<void> write(const std::string& path, const std::string& text) {
 }
 
 Result<void> run(const Options& options) {
+  keep_freed_memory();
   VKMESH_TRY(const Input input, read_input(options));
   VKMESH_TRY(const ReadingFiles files, ReadingFiles::write(input.mesh));
   VKMESH_TRY(const Programme programme, programme_for(options, input, files));

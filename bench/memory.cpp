@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <limits>
 #include <new>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 namespace vkmesh::bench {
 namespace {
@@ -53,6 +58,14 @@ MemoryWatch::MemoryWatch() : before_(held) {
 
 std::size_t MemoryWatch::peak() const {
   return static_cast<std::size_t>(most - before_);
+}
+
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  constexpr int kMost = std::numeric_limits<int>::max();
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, kMost);
+#endif
 }
 
 }  // namespace vkmesh::bench

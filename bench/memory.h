@@ -16,4 +16,9 @@ class MemoryWatch {
   std::ptrdiff_t before_;
 };
 
+/// From now on, what is freed stays with the process, as in one that does the same all day: what a system
+/// takes to hand memory out again, here up to 2 ms a megabyte, would be most of the time of some rows, and in
+/// no two runs the same.
+void keep_freed_memory();
+
 }  // namespace vkmesh::bench

@@ -107,19 +107,24 @@ class EdgeCollapses {
       std::size_t count = 0;
     };
     const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
-    const auto make = [&](std::size_t begin, std::size_t end, Block& block) {
+    const auto make = [this, &prepare, last](std::size_t begin, std::size_t end, Block& block) {
       block.count = 0;
+      CollapseMesh::Face* const faces = &mesh_.face(0);
+      const CollapseVertex* const vertices = vertices_.data();
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
-        for (const std::uint32_t v : mesh_.face(4 * std::min(f + kAhead, last)).origin)
-          prefetch(&vertices_[v]);
-        if (!mesh_.alive(4 * f)) continue;
-        prepare(mesh_.face(4 * f));
-        for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
-          const bool first = h < mesh_.twin(h);  // half of them, in no order that could be foretold
-          mesh_.face(h).tags |= static_cast<std::uint32_t>(first) << (h & 3u);
+        for (const std::uint32_t v : faces[std::min(f + kAhead, last)].origin) prefetch(&vertices[v]);
+        CollapseMesh::Face& face = faces[f];
+        if (!face.alive()) continue;
+        prepare(face);
+        std::uint32_t tags = 0;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+          const std::uint32_t h = 4 * f + i;
+          const std::uint32_t first = h < face.twin[i] ? 1 : 0;  // half of them; nothing foretells which
+          tags |= first << i;
           block.ids[block.count] = h;
-          block.count += first ? 1 : 0;
+          block.count += first;
         }
+        face.tags |= tags;
       }
       for (std::size_t i = 0; i < block.count; i += EdgeBatch::kSize) {
         const std::size_t some = std::min(EdgeBatch::kSize, block.count - i);
@@ -194,9 +199,13 @@ class EdgeCollapses {
   // The edges of these half-edges, into the batch.
   void evaluate(std::span<const std::uint32_t> edges) { evaluate(edges, batch_); }
   void evaluate(std::span<const std::uint32_t> edges, EdgeBatch& batch) const {
-    batch.gather(edges.size(), [&](std::size_t i) {
-      const std::uint32_t h = edges[i];
-      return std::pair(&vertices_[mesh_.origin(h)], &vertices_[mesh_.target(h)]);
+    const CollapseMesh::Face* const faces = mesh_.faces();
+    const CollapseVertex* const vertices = vertices_.data();
+    batch.gather(edges.size(), [edges, faces, vertices](std::size_t i) {
+      const CollapseMesh::Face& face = faces[edges[i] >> 2];
+      const std::uint32_t corner = edges[i] & 3u;
+      return std::pair(&vertices[face.origin[corner]],
+                       &vertices[face.origin[CollapseMesh::kNextCorner[corner]]]);
     });
     if constexpr (kAttributes && Placement::kAtEnds) {
       EndCosts end_costs;
@@ -337,8 +346,7 @@ class EdgeCollapses {
   }
 
   /// 1 or 0.
-  [[nodiscard]] std::uint32_t is_live(std::uint32_t h) const {
-    const CollapseMesh::Face& face = mesh_.face(h);
+  [[nodiscard]] static std::uint32_t is_live(const CollapseMesh::Face& face, std::uint32_t h) {
     return face.tags >> (h & 3u) & static_cast<std::uint32_t>(face.alive());
   }
 
@@ -346,9 +354,10 @@ class EdgeCollapses {
   void evaluate(Pending& b) {
     if (b.count == 0) return;
     std::size_t live = 0;
+    const CollapseMesh::Face* const faces = mesh_.faces();
     for (const std::uint32_t h : std::span(b.ids).first(b.live)) {
       b.ids[live] = h;
-      live += is_live(h);
+      live += is_live(faces[h >> 2], h);
     }
     const auto ids = std::span(b.ids).first(live);
     evaluate(ids);

@@ -56,8 +56,9 @@ inline void mark_seam(std::span<const std::uint8_t> labels, CollapseMesh::Face& 
   const std::array<std::uint8_t, 3> at = {labels[face.origin[0]], labels[face.origin[1]],
                                           labels[face.origin[2]]};
   const std::array<int, 3> inner = {at[0] & at[1], at[1] & at[2], at[2] & at[0]};
-  for (std::uint32_t i = 0; i < 3; ++i)
-    face.tags |= ((inner[i] & Territory::kInner) == 0 ? 1u : 0u) << CollapseMesh::kSeamShift << i;
+  std::uint32_t seam = 0;
+  for (std::uint32_t i = 0; i < 3; ++i) seam |= ((inner[i] & Territory::kInner) == 0 ? 1u : 0u) << i;
+  face.tags |= seam << CollapseMesh::kSeamShift;
 }
 
 }  // namespace vkmesh::detail
