@@ -19,6 +19,11 @@ function(vkmesh_target target)
     if(VKMESH_SANITIZE MATCHES address)
       target_compile_definitions(${target} PRIVATE VKMESH_ADDRESS_SANITIZER) # g++ and clang tell it in different ways
     endif()
+    if(VKMESH_SANITIZE MATCHES thread)
+      target_compile_definitions(${target} PRIVATE VKMESH_THREAD_SANITIZER)
+      target_compile_options(${target} PRIVATE
+        -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/thread_sanitizer_ignored.txt) # clang's alone
+    endif()
     if(VKMESH_SANITIZE MATCHES undefined)
       target_compile_options(${target} PRIVATE -fno-sanitize-recover=undefined)
     endif()

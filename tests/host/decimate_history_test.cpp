@@ -202,4 +202,31 @@ TEST_CASE("decimation: a history leads to each state on the way, with attributes
   }
 }
 
+TEST_CASE("decimation: a point that has moved keeps its values where another joins it", "[decimate]") {
+  // Tilted, so that points move by roundings; a corner is where it is whatever joins it.
+  IndexedFaceSet mesh = test::fine_cube(10);
+  for (Vec3& p : mesh.points)
+    p = {0.48f * p.x - 0.6f * p.y + 0.64f * p.z, 0.8f * p.y + 0.36f * p.x + 0.48f * p.z,
+         0.6f * p.z - 0.8f * p.x};
+  std::mt19937 random(1);
+  std::vector<float> values;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) values.push_back(static_cast<float>(random() % 100));
+  DecimateOptions options;
+  options.keep_history = true;
+  options.attributes = {{1, values, {}, 0.0, AttributeKind::kPlain}};
+  const Decimated whole = run(mesh, options);
+  Player player(mesh, options, whole);
+  std::size_t joined = 0;
+  for (std::size_t done = 1; done <= whole.history.size(); ++done) {
+    const Collapse<Vec3>& c = whole.history[done - 1];
+    const bool stays = player.places[c.kept] == c.position && c.position != mesh.points[c.kept];
+    player.step();
+    if (!stays) continue;
+    ++joined;
+    options.target_vertices = mesh.points.size() - done;
+    check_same(player, run(mesh, options));
+  }
+  CHECK(joined > 3);
+}
+
 }  // namespace vkmesh

@@ -3,13 +3,24 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "decimate_support.h"
 #include "decimation/collapse_mesh.h"
+#include "decimation/collapse_order.h"
+#include "decimation/collapse_queues.h"
+#include "decimation/driver.h"
+#include "decimation/edge_batch.h"
+#include "decimation/edge_collapses.h"
+#include "decimation/quadric_sums.h"
 #include "decimation/territories.h"
 #include "support/shapes.h"
 
@@ -35,6 +46,7 @@ CollapseMesh mesh_of(const IndexedFaceSet& set) {
     const Vec3 p = 0.5f / size * set.points[v];
     mesh.vertices[v] = {};
     mesh.vertices[v].position = {p.x, p.y, p.z};
+    mesh.vertices[v].source = v;
     mesh.vertices[v].leading = leading[v];
   }
   mesh.vertices[mesh.apex()] = {};
@@ -72,6 +84,103 @@ bool link_condition(const CollapseMesh& mesh, std::uint32_t p, std::uint32_t q) 
   const std::set<std::uint32_t> one(at_p.begin(), at_p.end()), other(at_q.begin(), at_q.end());
   return std::ranges::count_if(one, [&](std::uint32_t v) { return other.contains(v); }) == 2 &&
          at_p.size() + at_q.size() > 7;
+}
+
+/// Parts of a surface and the seam between them, one after another on one thread.
+template <class Placement>
+class Parts {
+ public:
+  explicit Parts(const IndexedFaceSet& shape, std::size_t count) : mesh_(mesh_of(shape)) {
+    mesh_.vertices[mesh_.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
+    detail::sum_quadrics(mesh_, {});
+    limits_.cos_deviation = std::cos(1.3f);
+    labels_ = detail::divide(mesh_, count);
+    for (std::size_t i = 0; i <= count; ++i)
+      shares_.push_back(std::make_unique<Share>(
+          state_, shape.face_count(),
+          Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kSeam)));
+    worker_.work_on(*shares_.back());
+    worker_.fill([&](std::uint32_t h, float cost) {
+      const std::size_t part = mesh_.at_seam(h) ? count : labels_[mesh_.origin(h)] & ~kInner;
+      shares_[part]->queue.insert(h, cost);
+    });
+  }
+
+  /// False when nothing is left.
+  bool round() {
+    constexpr std::uint32_t kOctaves = 32;
+    std::uint32_t first = MonotoneQueue::kNone;
+    for (const auto& share : shares_) first = std::min(first, share->queue.first());
+    if (first == MonotoneQueue::kNone) return false;
+    last_ = first + kOctaves;
+    for (const auto& share : shares_) {
+      worker_.work_on(*share);
+      if (share == shares_.back())
+        for (const auto& other : shares_) worker_.take_over(*other);
+      worker_.run(last_);
+    }
+    return true;
+  }
+
+  /// What the next round relies on: each edge is parked, or one of its halves stands in a queue, and no
+  /// higher than where it belongs now or the rounds have come to. Of a point of least error that is too far
+  /// the cost may fall, which nobody looks after.
+  void check_queues() {
+    std::map<std::uint32_t, std::uint32_t> lowest;
+    for (const auto& share : shares_) {
+      detail::LazyQueue queue = share->queue;
+      std::array<std::uint32_t, 64> ids;
+      while (const std::size_t count = queue.take(ids))
+        for (std::size_t i = 0; i < count; ++i) {
+          std::uint32_t& bucket = lowest.try_emplace(ids[i], MonotoneQueue::kNone).first->second;
+          bucket = std::min(bucket, queue.bucket());
+        }
+    }
+    std::size_t twice = 0, nowhere = 0, too_high = 0;
+    for (std::uint32_t h = 0; h < 4 * mesh_.face_count(); ++h) {
+      if (h % 4 == 3 || !mesh_.alive(h)) continue;
+      const std::uint32_t t = mesh_.twin(h);
+      twice += mesh_.queued(h) + mesh_.queued(t) + mesh_.parked(h) != 1 ? 1 : 0;
+      if (!mesh_.queued(h)) continue;
+      const auto found = lowest.find(h);
+      if (found == lowest.end()) {
+        ++nowhere;
+        continue;
+      }
+      batch_.gather(1, [&](std::size_t) {
+        return std::pair(&mesh_.vertices[mesh_.origin(h)], &mesh_.vertices[mesh_.target(h)]);
+      });
+      Placement::place(batch_, 1);
+      const std::uint32_t due = MonotoneQueue::bucket(batch_.cost[0]) + 1;  // the next one, by rounding
+      if (Placement::kMayFall != detail::MayFall::kNone && found->second > std::max(due, last_)) ++too_high;
+    }
+    CHECK(twice == 0);
+    CHECK(nowhere == 0);
+    CHECK(too_high == 0);
+  }
+
+  [[nodiscard]] std::size_t collapses() const { return state_.outcome.collapses; }
+
+ private:
+  using Worker = detail::EdgeCollapses<Placement, detail::LazyQueue>;
+  using Share = typename Worker::Share;
+
+  CollapseMesh mesh_;
+  detail::Limits limits_;
+  detail::DecimationState state_{mesh_, limits_, mesh_.face_count(), mesh_.apex(), false, {}};
+  std::vector<std::uint8_t> labels_;
+  std::vector<std::unique_ptr<Share>> shares_;  // the last is of the seam
+  Worker worker_{mesh_};
+  detail::EdgeBatch batch_;
+  std::uint32_t last_ = 0;
+};
+
+template <class Placement>
+void check_rounds(const IndexedFaceSet& shape) {
+  Parts<Placement> parts(shape, 4);
+  parts.check_queues();
+  while (parts.round()) parts.check_queues();
+  CHECK(parts.collapses() > shape.points.size() / 2);
 }
 
 }  // namespace
@@ -119,6 +228,36 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
     }
     CHECK(collapses > 50);
     check(mesh, labels);
+  }
+}
+
+TEST_CASE("no edge is lost or comes late between the parts of a surface", "[decimate]") {
+  for (IndexedFaceSet shape : {test::icosphere(3), test::torus(30, 16), test::grid(20, 22)}) {
+    test::jitter(shape, 0.05f, 1);
+    check_rounds<detail::OptimalPlacement>(shape);
+    check_rounds<detail::EndPlacement>(shape);
+  }
+}
+
+TEST_CASE("a history of parts has at any time done as much in each", "[decimate]") {
+  IndexedFaceSet half = test::icosphere(4);
+  test::jitter(half, 0.05f, 1);
+  const IndexedFaceSet mesh = test::both(half, half, {3.0f, 0.0f, 0.0f});
+  for (DecimateOptions options : test::ways()) {
+    if (options.operation == DecimateOperation::kVertexRemoval ||
+        options.placement == CollapsePlacement::kMidpoint)
+      continue;  // of one part
+    options.keep_history = true;
+    options.target_ratio = 0.2;
+    const auto done = detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+    REQUIRE(done);
+    std::ptrdiff_t ahead = 0, most = 0;
+    for (const Collapse<Vec3>& c : done->history) {
+      ahead += c.kept < half.points.size() ? 1 : -1;
+      most = std::max(most, std::abs(ahead));
+    }
+    CHECK(done->history.size() > mesh.points.size() / 2);
+    CHECK(100 * most < 2 * static_cast<std::ptrdiff_t>(done->history.size()));
   }
 }
 

@@ -7,7 +7,7 @@
 namespace vkmesh::test {
 
 /// The sanitizers make long work ten times as long: some tests do less of it then.
-#ifdef VKMESH_ADDRESS_SANITIZER
+#if defined(VKMESH_ADDRESS_SANITIZER) || defined(VKMESH_THREAD_SANITIZER)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
