@@ -99,11 +99,13 @@ class Parts {
       shares_.push_back(std::make_unique<Share>(
           state_, shape.face_count(),
           Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kSeam)));
+    for (std::uint32_t h = 0; h < mesh_.half_edge_bound(); h += 4) detail::mark_seam(labels_, mesh_.face(h));
     worker_.work_on(*shares_.back());
-    worker_.fill([&](std::uint32_t h, float cost) {
-      const std::size_t part = mesh_.at_seam(h) ? count : labels_[mesh_.origin(h)] & ~kInner;
-      shares_[part]->queue.insert(h, cost);
-    });
+    worker_.fill([](const CollapseMesh::Face&) {},
+                 [&](std::uint32_t h, float cost) {
+                   const std::size_t part = mesh_.at_seam(h) ? count : labels_[mesh_.origin(h)] & ~kInner;
+                   shares_[part]->queue.insert(h, cost);
+                 });
   }
 
   /// False when nothing is left.
