@@ -171,6 +171,18 @@ void lock(CollapseMesh& mesh, std::span<const std::uint32_t> corners, const Deci
     if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
 }
 
+/// About so much: by some vertices, spread as evenly as multiples of the golden ratio are.
+double total_weight_of(const CollapseMesh& mesh) {
+  constexpr std::size_t kMost = 4096;
+  const std::size_t all = mesh.apex(), some = std::min(all, kMost);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < some; ++i) {
+    const std::uint64_t spread = some == all ? i : (std::uint64_t{i * 0x9e3779b1u} * all) >> 32;
+    sum += static_cast<double>(mesh.vertices[spread].weight);
+  }
+  return some > 0 ? sum * static_cast<double>(all) / static_cast<double>(some) : 0;
+}
+
 template <class Point>
 Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               std::span<const std::uint32_t> corners,
@@ -309,6 +321,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         attributes ? &*attributes : nullptr,
                         criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         options.boundary == DecimateBoundary::kKept};
+  state.total_weight = total_weight_of(mesh);
   if (order == CollapseOrder::kParted) state.part_faces = 32;
   if (attributes && options.keep_history) attributes->keep_changes();
   VKMESH_TRY(Outcome outcome, run(state, options, order, progress));

@@ -68,8 +68,19 @@ struct DecimationState {
   AttributeQuadrics* attributes = nullptr;  // none
   Criteria* criteria = nullptr;             // none
   bool boundary_kept = false;
+  double total_weight = 0;  // of all vertices
   std::size_t part_faces = std::size_t{1} << 16;  // of parts that are decimated side by side
 
+  /// Whether what is removed now decides what lies farthest: no more than two times as much as will be left,
+  /// and a small share of all.
+  [[nodiscard]] bool is_last() const {
+    const auto within = [](std::size_t now, std::size_t limit, std::size_t all) {
+      return now - limit <= std::min(2 * limit, all / 50);
+    };
+    return within(faces, limits.faces, mesh.face_count()) || within(vertices, limits.vertices, mesh.apex());
+  }
+  /// That two vertices have.
+  [[nodiscard]] double mean_weight() const { return 2 * total_weight / static_cast<double>(vertices); }
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };
 

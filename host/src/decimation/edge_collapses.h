@@ -84,6 +84,15 @@ class EdgeCollapses {
     std::uint32_t last = MonotoneQueue::kLast;  // bucket that is served
     /// Half-edges of edges that others must see to, and vertices whose parked edges they must.
     std::vector<std::uint32_t> handed_on, to_revive;
+    /// What the square of a distance costs at least; 0 until the last collapses.
+    float cost_of_distance = 0;
+
+    /// `all`: what has been done, in all parts.
+    void watch(const DecimationState& all) {
+      cost_of_distance = all.is_last() ? static_cast<float>(all.mean_weight() / kFarthest2) : 0.0f;
+    }
+    /// A point may lie so many times farther than the square root of the mean square, squared.
+    static constexpr double kFarthest2 = 3.24;
   };
 
   explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
@@ -152,6 +161,7 @@ class EdgeCollapses {
 
   /// Takes the next of the queue and does what is legal and due. False when nothing is left.
   bool step() {
+    if (!share_->territory.is_part()) share_->watch(share_->state);
     std::rotate(pending_.begin(), pending_.begin() + 1, pending_.end());
     auto& [now, next, later, last] = pending_;
     if (Queue::kBatch > 1 && (share_->territory.is_part() || share_->state.faces > kInCache)) {
@@ -469,6 +479,7 @@ class EdgeCollapses {
     Rings rings;
     const Legality legality = judge(b, i, p, q, rings);
     if (legality == Legality::kLegal) {
+      if (!Placement::kByCriteria && share_->cost_of_distance > 0 && is_put_off(due, p, q)) return;
       collapse(due, p, q, rings);
     } else {
       ++share_->state.outcome.rejected[static_cast<std::size_t>(legality)];
@@ -477,6 +488,19 @@ class EdgeCollapses {
       vertices_[p].source |= CollapseVertex::kHasParked;
       vertices_[q].source |= CollapseVertex::kHasParked;
     }
+  }
+
+  /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
+  /// collapse waits until the costs that are due allow for the distance between the faces before and after.
+  [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
+    const float allowed = due.cost / share_->cost_of_distance;
+    const float distance2 =
+        turns_.squared_distance(vertices_[p].position, vertices_[q].position, due.x, allowed);
+    if (!(distance2 > allowed)) return false;
+    const float cost = distance2 * share_->cost_of_distance;
+    if (share_->queue.is_due(due.half_edge, cost)) return false;
+    share_->queue.insert(due.half_edge, cost);
+    return true;
   }
 
   [[nodiscard]] Legality judge_alone(std::uint32_t h) {
