@@ -70,9 +70,8 @@ std::vector<std::string> heading(const Report& report) {
                "%zu samples each "
                "way, over the bounding box's diagonal",
                report.samples));
+    lines.push_back("memory that was freed stays with the process: no row waits to be given it again");
     lines.push_back(
-        "memory that was freed stays with the process, so that no row waits for the system to hand it out "
-        "again",
         "bytes a vertex: what the process held at most in the first run beyond the input, the result "
         "included; "
         "of meshoptimizer: of the time of the first one");

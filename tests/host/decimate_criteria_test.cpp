@@ -135,7 +135,7 @@ TEST_CASE("decimation: normals stay near those of the original", "[decimate]") {
   const IndexedFaceSet mesh = test::icosphere(4);
   for (DecimateOptions options : ways()) {
     options.target_faces = 40;
-    CHECK(between(mesh, run(mesh, options)).two_sided().maximum_normal_angle > 0.6);
+    CHECK(between(mesh, run(mesh, options)).two_sided().maximum_normal_angle > 0.5);
     options.criteria.max_original_normal_deviation = 0.35;
     const Decimated result = run(mesh, options);
     CAPTURE(static_cast<int>(options.operation), static_cast<int>(options.placement));

@@ -26,8 +26,10 @@
 
 #include "decimate_support.h"
 #include "decimation/collapse_order.h"
+#include "decimation/face_turns.h"
 #include "support/data.h"
 #include "support/shapes.h"
+#include "triangle_distance.h"
 
 namespace vkmesh {
 namespace {
@@ -488,6 +490,80 @@ TEST_CASE("decimation: fandisk to 5 % keeps every sharp edge within 0.1 % of its
     }
   INFO("farthest " << 100 * farthest / diagonal << " %");
   CHECK(farthest < 0.001 * diagonal);
+}
+
+TEST_CASE("the distance between the faces before and after a collapse", "[decimate]") {
+  // Two fans around p and q that share the corners 0 and `split`, in a plane but for some height.
+  std::mt19937 random(5);
+  const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
+  std::size_t by_ends = 0, by_spokes = 0, near = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const std::size_t corners = 3 + random() % 18, split = 1 + random() % (corners - 1);
+    const double height = round % 3 == 0 ? 0 : 0.3;
+    std::vector<DVec3> ring(corners);
+    for (std::size_t k = 0; k < corners; ++k) {
+      const double angle = 2 * std::numbers::pi * (static_cast<double>(k) + 0.6 * uniform()) /
+                           static_cast<double>(corners),
+                   far = 1 + 2 * uniform();
+      ring[k] = {far * std::cos(angle), far * std::sin(angle), height * uniform()};
+    }
+    const auto inside = [&] {
+      return DVec3{0.5 * uniform() - 0.25, 0.5 * uniform() - 0.25, height * uniform()};
+    };
+    const DVec3 p = inside(), q = inside(), x = inside();
+
+    detail::LargeArray<detail::CollapseVertex> vertices(corners);
+    for (std::size_t k = 0; k < corners; ++k) {
+      vertices[k] = {};
+      for (int i = 0; i < 3; ++i)
+        vertices[k].position[static_cast<std::size_t>(i)] = static_cast<float>(ring[k][i]);
+    }
+    std::vector<std::uint32_t> at_p, at_q;
+    for (std::size_t k = 0; k <= split; ++k) at_p.push_back(static_cast<std::uint32_t>(k));
+    for (std::size_t k = split; k < corners; ++k) at_q.push_back(static_cast<std::uint32_t>(k));
+    at_q.push_back(0);
+    detail::FaceTurns turns;
+    const auto padded = [](std::vector<std::uint32_t>& some) {
+      const std::size_t size = some.size();
+      some.resize(size + detail::FaceTurns::kBlock);
+      return std::span<const std::uint32_t>(some).first(size);
+    };
+    turns.set(vertices, padded(at_p), padded(at_q));
+    const auto floats = [](const DVec3& v) {
+      return std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    };
+
+    // By definition.
+    std::vector<detail::Triangle> before = {{p, q, ring[0]}, {q, p, ring[split]}}, after;
+    for (std::size_t k = 0; k < corners; ++k) {
+      before.push_back({k < split ? p : q, ring[k], ring[(k + 1) % corners]});
+      after.push_back({x, ring[k], ring[(k + 1) % corners]});
+    }
+    const auto from = [](const DVec3& point, const std::vector<detail::Triangle>& faces) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const detail::Triangle& face : faces)
+        least = std::min(least, detail::squared_distance(point, face));
+      return least;
+    };
+    const double ends = std::max({from(p, after), from(q, after), from(0.5 * (p + q), after)});
+    double all = ends;
+    for (std::size_t k = 0; k < corners; ++k) {
+      if (k <= split) all = std::max(all, from(0.5 * (p + ring[k]), after));
+      if (k >= split || k == 0) all = std::max(all, from(0.5 * (q + ring[k]), after));
+      all = std::max(all, from(0.5 * (x + ring[k]), before));
+    }
+    for (const double least : {1e-4, 1e-3, 1e-2, 1.0}) {
+      const double expected = ends > least ? ends : std::max(all, least);
+      (ends > least ? by_ends : all > least ? by_spokes : near) += 1;
+      CAPTURE(round, corners, split, least);
+      CHECK(static_cast<double>(
+                turns.squared_distance(floats(p), floats(q), floats(x - p), static_cast<float>(least))) ==
+            Approx(expected).epsilon(1e-3).margin(1e-6));
+    }
+  }
+  CHECK(by_ends > 500);
+  CHECK(by_spokes > 50);
+  CHECK(near > 500);
 }
 
 }  // namespace vkmesh

@@ -198,6 +198,18 @@ CollapseMesh::Built build_along_curve(CollapseMesh& mesh, std::size_t vertex_cou
   return mesh.build(vertex_count, faces, face_of, leading);
 }
 
+/// Of some vertices, spread as evenly as multiples of the golden ratio are.
+double mean_weight_of(const CollapseMesh& mesh) {
+  constexpr std::size_t kMost = 4096;
+  const std::size_t all = mesh.apex(), some = std::min(all, kMost);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < some; ++i) {
+    const std::uint64_t spread = some == all ? i : (std::uint64_t{i * 0x9e3779b1u} * all) >> 32;
+    sum += static_cast<double>(mesh.vertices[spread].weight);
+  }
+  return some > 0 ? sum / static_cast<double>(some) : 0;
+}
+
 template <class Point>
 Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               std::span<const std::uint32_t> corners,
@@ -319,6 +331,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         attributes ? &*attributes : nullptr,
                         criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         options.boundary == DecimateBoundary::kKept};
+  state.mean_weight = mean_weight_of(mesh);
   if (order == CollapseOrder::kParted) state.part_faces = 32;
   if (attributes && options.keep_history) attributes->keep_changes();
   VKMESH_TRY(Outcome outcome, run(state, options, order, progress));

@@ -68,6 +68,7 @@ struct DecimationState {
   AttributeQuadrics* attributes = nullptr;  // none
   Criteria* criteria = nullptr;             // none
   bool boundary_kept = false;
+  double mean_weight = 0;                         // of all vertices at first
   std::size_t part_faces = std::size_t{1} << 16;  // of parts that are decimated side by side
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }

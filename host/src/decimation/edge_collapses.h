@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -85,6 +86,20 @@ class EdgeCollapses {
     std::uint32_t last = MonotoneQueue::kLast;  // bucket that is served
     /// Half-edges of edges that others must see to, and vertices whose parked edges they must.
     std::vector<std::uint32_t> handed_on, to_revive;
+    /// What the square of a distance costs at least; 0 while points may move as they like.
+    float cost_of_distance = 0;
+
+    /// `all`: what has been done, in all parts. Once few faces are left points must not move far for what the
+    /// planes say that costs. It depends on nothing but how many are left, and changes when they are half as
+    /// many: what waits is not put off again and again.
+    void watch(const DecimationState& all) {
+      const std::size_t share = std::bit_floor(all.mesh.face_count() / std::max<std::size_t>(all.faces, 1));
+      const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
+      cost_of_distance = share >= kFewLeft ? static_cast<float>(edge_weight / kFarthest2) : 0.0f;
+    }
+    static constexpr std::size_t kFewLeft = 32;  // a thirty-second of the faces
+    /// How far, in roots of the mean square distance that a cost stands for; squared.
+    static constexpr double kFarthest2 = 2.25;
   };
 
   explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
@@ -159,6 +174,7 @@ class EdgeCollapses {
 
   /// Takes the next of the queue and does what is legal and due. False when nothing is left.
   bool step() {
+    if (!share_->territory.is_part()) share_->watch(share_->state);
     std::rotate(pending_.begin(), pending_.begin() + 1, pending_.end());
     auto& [now, next, later, last] = pending_;
     if (Queue::kBatch > 1 && (share_->territory.is_part() || share_->state.faces > kInCache)) {
@@ -511,6 +527,7 @@ class EdgeCollapses {
     Rings rings;
     const Legality legality = judge(b, i, p, q, rings);
     if (legality == Legality::kLegal) {
+      if (!Placement::kByCriteria && share_->cost_of_distance > 0 && is_put_off(due, p, q)) return;
       collapse(due, p, q, rings);
     } else {
       ++share_->state.outcome.rejected[static_cast<std::size_t>(legality)];
@@ -519,6 +536,19 @@ class EdgeCollapses {
       vertices_[p].source |= CollapseVertex::kHasParked;
       vertices_[q].source |= CollapseVertex::kHasParked;
     }
+  }
+
+  /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
+  /// collapse waits until the costs that are due allow for the distance between the faces before and after.
+  [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
+    const float allowed = due.cost / share_->cost_of_distance;
+    const float distance2 =
+        turns_.squared_distance(vertices_[p].position, vertices_[q].position, due.x, allowed);
+    if (!(distance2 > allowed)) return false;
+    const float cost = distance2 * share_->cost_of_distance;
+    if (share_->queue.is_due(due.half_edge, cost)) return false;
+    share_->queue.insert(due.half_edge, cost);
+    return true;
   }
 
   [[nodiscard]] Legality judge_alone(std::uint32_t h) {

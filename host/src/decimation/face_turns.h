@@ -31,6 +31,12 @@ class FaceTurns {
   bool folds_over(const std::array<float, 3>& p, const std::array<float, 3>& q, const std::array<float, 3>& x,
                   float cos_deviation) const;
 
+  /// The squared distance between the faces before and after that, as far as a few points show it: the ends
+  /// and the middles of their edges, each to the faces on the other side. At least `least`: what is nearer
+  /// does not matter.
+  [[nodiscard]] float squared_distance(const std::array<float, 3>& p, const std::array<float, 3>& q,
+                                       const std::array<float, 3>& x, float least) const;
+
  private:
   using Vector = std::array<float, 3>;
 

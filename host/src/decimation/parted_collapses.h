@@ -88,7 +88,8 @@ class PartedCollapses {
   struct Part {
     Part(const DecimationState& all, std::size_t edges, Territory territory)
         : limits(all.limits),
-          state{all.mesh, limits, 0, 0, all.keep_events, {}, nullptr, nullptr, all.boundary_kept},
+          state{all.mesh,          limits,         0, 0, all.keep_events, {}, nullptr, nullptr,
+                all.boundary_kept, all.mean_weight},
           share(state, edges, territory) {
       limits.faces = limits.vertices = kRest;
     }
@@ -131,6 +132,7 @@ class PartedCollapses {
     // So few that together they cannot go beyond the limits.
     const std::size_t divisor = 2 * parts_.size(), faces = (state_.faces - state_.limits.faces) / divisor,
                       vertices = (state_.vertices - state_.limits.vertices) / divisor;
+    for (const auto& part : parts_) part->share.watch(state_);
     parallel_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) parts_[i]->run(workers_.local(), faces, vertices, last);
     });
