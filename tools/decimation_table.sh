@@ -2,12 +2,12 @@
 # Measures decimation beside its peers and writes the table that docs/decimation.md shows. Downloads nothing.
 #   VKMESH_MESHOPTIMIZER_SOURCE=FOLDER tools/decimation_table.sh [REPETITIONS [OUT]]
 # FOLDER holds the sources of meshoptimizer 1.2 or later. Writes OUT.md and OUT.json, by default
-# bench/results/decimation-2core-epyc, which docs/decimation.md then shows. Nine repetitions take about five minutes.
+# bench/results/decimation-2core-xeon, which docs/decimation.md then shows. Nine repetitions take about five minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/lib.sh
 
-committed=bench/results/decimation-2core-epyc
+committed=bench/results/decimation-2core-xeon
 repetitions=${1:-9} out=${2:-$committed}
 peers=${VKMESH_MESHOPTIMIZER_SOURCE:-}
 

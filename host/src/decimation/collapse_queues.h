@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <vkmesh/decimation/addressable_heap.h>
@@ -24,6 +25,8 @@ class LazyQueue {
   void insert_now(std::uint32_t id) { queue_.insert_now(id); }
   void erase(std::uint32_t) {}
   [[nodiscard]] bool is_due(std::uint32_t, float cost) const { return queue_.is_due(cost); }
+  /// The highest cost that is due.
+  [[nodiscard]] float level() const { return queue_.level(); }
   std::size_t take(std::span<std::uint32_t> out, std::uint32_t last = MonotoneQueue::kLast) {
     return queue_.take(out, last);
   }
@@ -52,6 +55,9 @@ class ExactQueue {
   void insert_now(std::uint32_t id) { heap_.set(id, -1.0f); }
   void erase(std::uint32_t id) { heap_.remove(id); }
   [[nodiscard]] std::uint32_t bucket() const { return 0; }
+  [[nodiscard]] float level() const {
+    return heap_.empty() ? std::numeric_limits<float>::infinity() : heap_.top_priority();
+  }
   [[nodiscard]] bool is_due(std::uint32_t id, float cost) const {
     return heap_.empty() || cost < heap_.top_priority() || (cost == heap_.top_priority() && id < heap_.top());
   }

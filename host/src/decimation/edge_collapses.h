@@ -541,7 +541,7 @@ class EdgeCollapses {
   /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
   /// collapse waits until the costs that are due allow for the distance between the faces before and after.
   [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
-    const float allowed = due.cost / share_->cost_of_distance;
+    const float allowed = std::max(due.cost, share_->queue.level()) / share_->cost_of_distance;
     const float distance2 =
         turns_.squared_distance(vertices_[p].position, vertices_[q].position, due.x, allowed);
     if (!(distance2 > allowed)) return false;

@@ -126,7 +126,8 @@ struct SpokeBounds {
 
 VKMESH_CLONES void bound_ends(const float* __restrict cx, const float* __restrict cy,
                               const float* __restrict cz, const Lie& lie, EndBounds& out) {
-  EndBounds* const __restrict bounds = &out;
+  float *const __restrict from_p = out.p.data(), *const __restrict from_q = out.q.data(),
+                          *const __restrict from_middle = out.middle.data();
   const float x0 = lie.place[0], x1 = lie.place[1], x2 = lie.place[2];
   const float p0 = lie.p[0], p1 = lie.p[1], p2 = lie.p[2], q0 = lie.q[0], q1 = lie.q[1], q2 = lie.q[2];
   const float m0 = lie.middle[0], m1 = lie.middle[1], m2 = lie.middle[2];
@@ -135,15 +136,15 @@ VKMESH_CLONES void bound_ends(const float* __restrict cx, const float* __restric
     for (std::int32_t k = first; k < first + kBlock; ++k) {
       const float ax = cx[k] - x0, ay = cy[k] - x1, az = cz[k] - x2;
       const float bx = cx[k + 1] - x0, by = cy[k + 1] - x1, bz = cz[k + 1] - x2;
-      bounds->p[k] = to_point_of(p0, p1, p2, 0, 0, 0, ax, ay, az, bx, by, bz);
-      bounds->q[k] = to_point_of(q0, q1, q2, 0, 0, 0, ax, ay, az, bx, by, bz);
-      bounds->middle[k] = to_point_of(m0, m1, m2, 0, 0, 0, ax, ay, az, bx, by, bz);
+      from_p[k] = to_point_of(p0, p1, p2, 0, 0, 0, ax, ay, az, bx, by, bz);
+      from_q[k] = to_point_of(q0, q1, q2, 0, 0, 0, ax, ay, az, bx, by, bz);
+      from_middle[k] = to_point_of(m0, m1, m2, 0, 0, 0, ax, ay, az, bx, by, bz);
     }
 }
 
 VKMESH_CLONES void bound_spokes(const float* __restrict cx, const float* __restrict cy,
                                 const float* __restrict cz, const Lie& lie, SpokeBounds& out) {
-  SpokeBounds* const __restrict bounds = &out;
+  float* const __restrict before = out.before.data(), * const __restrict after = out.after.data();
   const float x0 = lie.place[0], x1 = lie.place[1], x2 = lie.place[2];
   const float p0 = lie.p[0], p1 = lie.p[1], p2 = lie.p[2], q0 = lie.q[0], q1 = lie.q[1], q2 = lie.q[2];
   const std::int32_t at_p = lie.at_p, faces = lie.faces;
@@ -164,8 +165,8 @@ VKMESH_CLONES void bound_spokes(const float* __restrict cx, const float* __restr
       const float t1 = to_point_of(tx, ty, tz, ox, oy, oz, ax, ay, az, bx, by, bz),
                   t2 = to_point_of(tx, ty, tz, nx, ny, nz, bx, by, bz, ex, ey, ez);
       const float s = s1 < most ? s1 : most, t = t1 < most ? t1 : most;
-      bounds->before[k] = s2 < s ? s2 : s;
-      bounds->after[k] = t2 < t ? t2 : t;
+      before[k] = s2 < s ? s2 : s;
+      after[k] = t2 < t ? t2 : t;
     }
 }
 

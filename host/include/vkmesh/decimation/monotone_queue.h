@@ -39,6 +39,8 @@ class MonotoneQueue {
 
   /// The bucket that is being served.
   [[nodiscard]] std::uint32_t floor() const { return floor_; }
+  /// The highest priority that would be served now.
+  [[nodiscard]] float level() const { return std::bit_cast<float>(((floor_ + 1) << kShift) - 1); }
   /// Whether an id of this priority would be served now.
   [[nodiscard]] bool is_due(float priority) const { return bucket(priority) <= floor_; }
 
