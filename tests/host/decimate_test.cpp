@@ -679,7 +679,7 @@ TEST_CASE("decimation: the dragon to a tenth stays manifold and near", "[decimat
       surface_distance({mesh->points, mesh->corners}, {few.positions, few.mesh.origins()}, {200000, 1});
   REQUIRE(distance);
   CHECK(distance->two_sided().mean < 3.15e-4 * distance->diagonal);
-  CHECK(distance->two_sided().maximum < 3.3e-3 * distance->diagonal);
+  CHECK(distance->two_sided().maximum < 3.2e-3 * distance->diagonal);
 }
 
 }  // namespace vkmesh

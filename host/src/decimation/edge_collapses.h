@@ -97,7 +97,7 @@ class EdgeCollapses {
       const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
       cost_of_distance = share >= kFewLeft ? static_cast<float>(edge_weight / kFarthest2) : 0.0f;
     }
-    static constexpr std::size_t kFewLeft = 32;  // a thirty-second of the faces
+    static constexpr std::size_t kFewLeft = 16;  // a sixteenth of the faces
     /// How far, in roots of the mean square distance that a cost stands for; squared.
     static constexpr double kFarthest2 = 2.25;
   };
