@@ -21,6 +21,7 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/territories.h"
+#include "decimation/wedges.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
@@ -67,29 +68,41 @@ double dot(const DVec3& a, const DVec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// Faces of different groups have a seam between them.
+std::uint32_t group_of(std::uint32_t face) {
+  return face / 4 % 3;
+}
+
 /// The weight of the planes at each vertex, and w n nᵀ, by definition.
 class Sums {
  public:
   Sums(const IndexedFaceSet& mesh, const detail::ConstraintWeights& weights) : at(mesh.points.size()) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, DVec3> areas;  // by half-edge that of its face, doubled
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    struct Face {
+      DVec3 area;  // doubled
+      std::uint32_t group;
+    };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Face> faces;  // by half-edge
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
       const auto corners = mesh.face(f);
       const DVec3 a(mesh.points[corners[0]]), b(mesh.points[corners[1]]), c(mesh.points[corners[2]]);
       const DVec3 area = cross(b - a, c - a);
       for (std::size_t i = 0; i < 3; ++i) {
         add(corners[i], area, std::sqrt(dot(area, area)) / 2);
-        areas[{corners[i], corners[(i + 1) % 3]}] = area;
+        faces[{corners[i], corners[(i + 1) % 3]}] = {area, group_of(f)};
       }
     }
-    for (const auto& [ends, area] : areas) {
+    for (const auto& [ends, face] : faces) {
+      const DVec3& area = face.area;
       const DVec3 edge = DVec3(mesh.points[ends.second]) - DVec3(mesh.points[ends.first]);
-      const auto other = areas.find({ends.second, ends.first});
+      const auto other = faces.find({ends.second, ends.first});
       double weight = weights.boundary;
-      if (other != areas.end()) {
-        const double cosine =
-            dot(area, other->second) / std::sqrt(dot(area, area) * dot(other->second, other->second));
-        weight = cosine < weights.crease_cosine ? weights.crease : 0;
-        creases += weight > 0 ? 1 : 0;
+      if (other != faces.end()) {
+        const DVec3& beyond = other->second.area;
+        const double cosine = dot(area, beyond) / std::sqrt(dot(area, area) * dot(beyond, beyond));
+        const bool crease = cosine < weights.crease_cosine, seam = face.group != other->second.group;
+        weight = std::max(crease ? weights.crease : 0, seam ? weights.seam : 0);
+        creases += crease ? 1 : 0;
+        seams_in_creases += crease && seam ? 1 : 0;
       }
       for (const std::uint32_t v : {ends.first, ends.second})
         add(v, cross(edge, area), weight * dot(edge, edge));
@@ -97,7 +110,7 @@ class Sums {
   }
 
   std::vector<std::array<double, 7>> at;
-  std::size_t creases = 0;
+  std::size_t creases = 0, seams_in_creases = 0;
 
  private:
   void add(std::uint32_t v, const DVec3& normal, double weight) {
@@ -116,7 +129,12 @@ void check_quadrics(const IndexedFaceSet& mesh, const detail::ConstraintWeights&
   tbb::task_arena arena(threads);
   CollapseMesh built = arena.execute([&] {
     CollapseMesh made = mesh_of(mesh);
-    detail::sum_quadrics(made, weights);
+    const detail::Wedges wedges(made, mesh.points.size(), [](std::uint32_t c, std::uint32_t d) {
+      return group_of(c / 3) == group_of(d / 3);
+    });
+    detail::ConstraintWeights all = weights;
+    all.wedges = &wedges;
+    detail::sum_quadrics(made, all);
     return made;
   });
   std::size_t wrong = 0;
@@ -136,7 +154,7 @@ void check_quadrics(const IndexedFaceSet& mesh, const detail::ConstraintWeights&
 
 }  // namespace
 
-TEST_CASE("decimation: quadrics start as the sums over the planes of faces, boundaries and creases",
+TEST_CASE("decimation: quadrics start as the sums over the planes of faces, boundaries, creases and seams",
           "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   // Some blocks of faces, the last of any size; a fold every few rows.
@@ -150,8 +168,12 @@ TEST_CASE("decimation: quadrics start as the sums over the planes of faces, boun
     some.corners.resize(3 * faces);  // these are manifolds, too
     for (const detail::ConstraintWeights& weights :
          {detail::ConstraintWeights{}, detail::ConstraintWeights{10, 0, -1, 0, nullptr},
-          detail::ConstraintWeights{0.5f, 3, std::cos(0.8f), 0, nullptr}}) {
-      CHECK((faces < 2000 || weights.crease == 0 || Sums(some, weights).creases > 100));
+          detail::ConstraintWeights{0.5f, 3, std::cos(0.8f), 0, nullptr},
+          detail::ConstraintWeights{0, 0, -1, 2, nullptr},
+          detail::ConstraintWeights{0.5f, 3, std::cos(0.8f), 4, nullptr}}) {
+      const Sums sums(some, weights);
+      CHECK((faces < 2000 || weights.crease == 0 || sums.creases > 100));
+      CHECK((faces < 2000 || weights.crease == 0 || sums.seams_in_creases > 10));
       for (const int threads : {1, 2, 3, 8}) check_quadrics(some, weights, threads);
     }
   }
