@@ -20,6 +20,7 @@
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
 #include "decimation/edge_collapses.h"
+#include "decimation/parted_collapses.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/territories.h"
 #include "support/shapes.h"
@@ -108,8 +109,8 @@ class Parts {
                  });
   }
 
-  /// False when nothing is left.
-  bool round() {
+  /// False when nothing is left. No run removes more than about `most` faces.
+  bool round(std::size_t most) {
     constexpr std::uint32_t kOctaves = 32;
     std::uint32_t first = MonotoneQueue::kNone;
     for (const auto& share : shares_) first = std::min(first, share->queue.first());
@@ -119,7 +120,10 @@ class Parts {
       worker_.work_on(*share);
       if (share == shares_.back())
         for (const auto& other : shares_) worker_.take_over(*other);
+      limits_.faces = state_.faces - std::min(most, state_.faces);
+      const std::vector<Known> before = known_outside(share->territory);
       worker_.run(last_);
+      CHECK(known_outside(share->territory) == before);
     }
     return true;
   }
@@ -129,12 +133,16 @@ class Parts {
   /// the cost may fall, which nobody looks after.
   void check_queues() {
     std::map<std::uint32_t, std::uint32_t> lowest;
-    for (const auto& share : shares_) {
-      detail::LazyQueue queue = share->queue;
+    std::size_t foreign = 0;
+    for (std::size_t part = 0; part < shares_.size(); ++part) {
+      detail::LazyQueue queue = shares_[part]->queue;
       std::array<std::uint32_t, 64> ids;
       while (const std::size_t count = queue.take(ids))
         for (std::size_t i = 0; i < count; ++i) {
-          std::uint32_t& bucket = lowest.try_emplace(ids[i], MonotoneQueue::kNone).first->second;
+          const std::uint32_t h = ids[i];
+          const bool inner = mesh_.alive(h) && mesh_.queued(h) && !mesh_.at_seam(h);
+          foreign += inner && part + 1 < shares_.size() && (labels_[mesh_.origin(h)] & ~kInner) != part;
+          std::uint32_t& bucket = lowest.try_emplace(h, MonotoneQueue::kNone).first->second;
           bucket = std::min(bucket, queue.bucket());
         }
     }
@@ -159,6 +167,14 @@ class Parts {
     CHECK(twice == 0);
     CHECK(nowhere == 0);
     CHECK(too_high == 0);
+    CHECK(foreign == 0);
+  }
+
+  /// Between rounds no edge that is parked could collapse.
+  void check_parked() {
+    worker_.work_on(*shares_.back());
+    worker_.hold();
+    CHECK(state_.outcome.held[static_cast<std::size_t>(detail::Legality::kLegal)] == 0);
   }
 
   [[nodiscard]] std::size_t collapses() const { return state_.outcome.collapses; }
@@ -166,6 +182,18 @@ class Parts {
  private:
   using Worker = detail::EdgeCollapses<Placement, detail::LazyQueue>;
   using Share = typename Worker::Share;
+
+  /// What a part may not change where it does not belong.
+  using Known = std::pair<std::array<float, 4>, bool>;
+  [[nodiscard]] std::vector<Known> known_outside(const Territory& territory) const {
+    std::vector<Known> known;
+    for (std::uint32_t v = 0; v < mesh_.apex() && territory.is_part(); ++v) {
+      const detail::CollapseVertex& vertex = mesh_.vertices[v];
+      const auto& [x, y, z] = vertex.position;
+      if (!territory.holds(v)) known.push_back({{x, y, z, vertex.weight}, vertex.alive()});
+    }
+    return known;
+  }
 
   CollapseMesh mesh_;
   detail::Limits limits_;
@@ -179,11 +207,32 @@ class Parts {
 
 template <class Placement>
 void check_rounds(const IndexedFaceSet& shape) {
-  Parts<Placement> parts(shape, 4);
-  parts.check_queues();
-  while (parts.round()) parts.check_queues();
-  CHECK(parts.collapses() > shape.points.size() / 2);
+  for (const std::size_t most : {shape.face_count(), std::size_t{20}}) {
+    Parts<Placement> parts(shape, 4);
+    parts.check_queues();
+    while (parts.round(most)) {
+      parts.check_queues();
+      parts.check_parked();
+    }
+    CHECK(parts.collapses() > shape.points.size() / 2);
+  }
 }
+
+/// Decimation in parts as decimate() does it, of a mesh to be looked into.
+struct InParts {
+  InParts(const IndexedFaceSet& shape, std::size_t part_faces, std::size_t to_faces) : mesh(mesh_of(shape)) {
+    mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    limits.cos_deviation = std::cos(1.3f);
+    limits.faces = to_faces;
+    state.part_faces = part_faces;
+  }
+
+  CollapseMesh mesh;
+  detail::Limits limits;
+  detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+};
+using OptimalInParts = detail::PartedCollapses<detail::OptimalPlacement, detail::LazyQueue, false>;
 
 }  // namespace
 
@@ -239,6 +288,72 @@ TEST_CASE("no edge is lost or comes late between the parts of a surface", "[deci
     check_rounds<detail::OptimalPlacement>(shape);
     check_rounds<detail::EndPlacement>(shape);
   }
+}
+
+TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimate]") {
+  InParts all(test::grid(61, 80), 1, 0);  // of some blocks of faces
+  detail::EdgeCollapses<detail::OptimalPlacement, detail::LazyQueue> worker(all.mesh);
+  decltype(worker)::Share share(all.state, 0);
+  worker.work_on(share);
+  std::vector<int> prepared(all.mesh.face_count()), times(all.mesh.half_edge_bound());
+  worker.fill([&](const CollapseMesh::Face& face) { ++prepared[face.source]; },
+              [&](std::uint32_t h, float) { ++times[h]; });
+  CHECK(std::ranges::count(prepared, 1) == static_cast<std::ptrdiff_t>(prepared.size()));
+  std::size_t wrong = 0;
+  for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h) {
+    if (h % 4 == 3) continue;
+    const std::uint32_t t = all.mesh.twin(h);
+    wrong += times[h] + times[t] == 1 && all.mesh.queued(h) == (times[h] == 1) ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("each half of an edge knows whether it is at the seam before parts are at work", "[decimate]") {
+  for (const IndexedFaceSet& shape : {test::grid(20, 22), test::torus(24, 14)}) {
+    InParts all(shape, shape.face_count() / 4, 0);
+    const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
+    OptimalInParts collapses(all.state);
+    collapses.fill();
+    check(all.mesh, labels);
+    std::size_t seam = 0;
+    for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h)
+      seam += h % 4 != 3 && all.mesh.at_seam(h) ? 1 : 0;
+    CHECK(seam > 100);
+  }
+}
+
+TEST_CASE("what was pruned is of no part", "[decimate]") {
+  const IndexedFaceSet shape = test::both(test::icosphere(3), test::grid(5, 4), {3.0f, 0.0f, 0.0f});
+  IndexedFaceSet small = shape;
+  for (std::size_t v = shape.points.size() - 30; v < shape.points.size(); ++v) small.points[v] *= 0.1f;
+  DecimateOptions options;
+  options.prune_relative_size = 0.25;
+  options.target_ratio = 0.1;
+  const auto done = detail::decimate({small.points, small.corners}, options, detail::CollapseOrder::kParted);
+  REQUIRE(done);
+  REQUIRE(validate(done->mesh));
+  CHECK(done->pruned_components == 1);
+  CHECK(done->pruned_faces == 40);
+  CHECK(done->mesh.face_count() == 132);
+  for (std::size_t v = 0; v < small.points.size(); ++v)
+    CHECK((done->vertex_map[v] == kInvalid) == (v + 30 >= small.points.size()));
+}
+
+TEST_CASE("parts that become one again lose nothing", "[decimate]") {
+  IndexedFaceSet half = test::icosphere(4);
+  test::jitter(half, 0.05f, 1);
+  const IndexedFaceSet shape = test::both(half, half, {3.0f, 0.0f, 0.0f});
+  // So near the target that there is no round before.
+  const std::size_t part_faces = shape.face_count() / 2, to_faces = shape.face_count() - 300;
+  InParts all(shape, part_faces, to_faces);
+  OptimalInParts collapses(all.state);
+  collapses.fill();
+  while (!all.state.reached()) REQUIRE(collapses.step());
+  std::array<std::size_t, 2> gone{};
+  for (std::uint32_t v = 0; v < all.mesh.apex(); ++v)
+    gone[v < half.points.size() ? 0 : 1] += all.mesh.vertices[v].alive() ? 0 : 1;
+  CHECK(gone[0] + gone[1] == 150);
+  CHECK(std::min(gone[0], gone[1]) > 60);
 }
 
 TEST_CASE("a history of parts has at any time done as much in each", "[decimate]") {
