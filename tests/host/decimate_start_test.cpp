@@ -30,25 +30,7 @@ namespace {
 using detail::CollapseMesh;
 using detail::CollapseVertex;
 using detail::Territory;
-
-CollapseMesh mesh_of(const IndexedFaceSet& set) {
-  CollapseMesh mesh;
-  std::vector<std::uint32_t> leading;
-  const auto face_of = [&](std::size_t f) {
-    const auto corners = set.face(f);
-    return CollapseMesh::Face{{corners[0], corners[1], corners[2]}, 0, {}, static_cast<std::uint32_t>(f)};
-  };
-  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == CollapseMesh::Built::kDone);
-  for (std::uint32_t v = 0; v < set.points.size(); ++v) {
-    mesh.vertices[v] = {};
-    mesh.vertices[v].position = {set.points[v].x, set.points[v].y, set.points[v].z};
-    mesh.vertices[v].source = v;
-    mesh.vertices[v].leading = leading[v];
-  }
-  mesh.vertices[mesh.apex()] = {};
-  mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
-  return mesh;
-}
+using test::collapse_mesh_of;
 
 /// The same with other numbers for the points.
 IndexedFaceSet shuffle(const IndexedFaceSet& mesh, std::uint32_t seed) {
@@ -128,7 +110,7 @@ void check_quadrics(const IndexedFaceSet& mesh, const detail::ConstraintWeights&
   const Sums expected(mesh, weights);
   tbb::task_arena arena(threads);
   CollapseMesh built = arena.execute([&] {
-    CollapseMesh made = mesh_of(mesh);
+    CollapseMesh made = collapse_mesh_of(mesh);
     const detail::Wedges wedges(made, mesh.points.size(), [](std::uint32_t c, std::uint32_t d) {
       return group_of(c / 3) == group_of(d / 3);
     });
@@ -201,7 +183,7 @@ TEST_CASE("decimation: parts of a surface too large to be counted are of one siz
   IndexedFaceSet mesh = test::grid(360, 250);
   for (Vec3& p : mesh.points) p = p / 360.0f - Vec3(0.5f);
   for (const bool shuffled : {false, true}) {
-    CollapseMesh built = mesh_of(shuffled ? shuffle(mesh, 1) : mesh);
+    CollapseMesh built = collapse_mesh_of(shuffled ? shuffle(mesh, 1) : mesh);
     const std::vector<std::uint8_t> labels = detail::divide(built, 8);
     std::vector<std::size_t> size(8);
     for (std::uint32_t v = 0; v < built.apex(); ++v) ++size.at(labels[v] & ~Territory::kInner);

@@ -1,6 +1,8 @@
 // What the tests of decimation share.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -9,6 +11,7 @@
 
 #include <vkmesh/decimation/decimate.h>
 
+#include "decimation/collapse_mesh.h"
 #include "support/shapes.h"
 
 namespace vkmesh::test {
@@ -33,6 +36,27 @@ inline std::vector<DecimateOptions> ways() {
   all[3].operation = DecimateOperation::kHalfEdgeCollapse;
   all[4].operation = DecimateOperation::kVertexRemoval;
   return all;
+}
+
+/// As decimation begins with it: quadrics of nothing, and the apex nowhere.
+inline detail::CollapseMesh collapse_mesh_of(const IndexedFaceSet& set) {
+  using detail::CollapseMesh;
+  CollapseMesh mesh;
+  std::vector<std::uint32_t> leading;
+  const auto face_of = [&](std::size_t f) {
+    const auto corners = set.face(f);
+    return CollapseMesh::Face{{corners[0], corners[1], corners[2]}, 0, {}, static_cast<std::uint32_t>(f)};
+  };
+  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == CollapseMesh::Built::kDone);
+  for (std::uint32_t v = 0; v < set.points.size(); ++v) {
+    mesh.vertices[v] = {};
+    mesh.vertices[v].position = {set.points[v].x, set.points[v].y, set.points[v].z};
+    mesh.vertices[v].source = v;
+    mesh.vertices[v].leading = leading[v];
+  }
+  mesh.vertices[mesh.apex()] = {};
+  mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
+  return mesh;
 }
 
 }  // namespace vkmesh::test

@@ -33,25 +33,12 @@ using detail::Territory;
 
 constexpr std::uint8_t kInner = Territory::kInner;
 
-CollapseMesh mesh_of(const IndexedFaceSet& set) {
-  CollapseMesh mesh;
-  std::vector<std::uint32_t> leading;
-  const auto face_of = [&](std::size_t f) {
-    const auto corners = set.face(f);
-    return CollapseMesh::Face{{corners[0], corners[1], corners[2]}, 0, {}, static_cast<std::uint32_t>(f)};
-  };
-  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == CollapseMesh::Built::kDone);
+/// Fitted into the cube that parts are cut in.
+CollapseMesh mesh_of(IndexedFaceSet set) {
   float size = 0;
   for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  for (std::uint32_t v = 0; v < set.points.size(); ++v) {
-    const Vec3 p = 0.5f / size * set.points[v];
-    mesh.vertices[v] = {};
-    mesh.vertices[v].position = {p.x, p.y, p.z};
-    mesh.vertices[v].source = v;
-    mesh.vertices[v].leading = leading[v];
-  }
-  mesh.vertices[mesh.apex()] = {};
-  return mesh;
+  for (Vec3& p : set.points) p = 0.5f / size * p;
+  return test::collapse_mesh_of(set);
 }
 
 std::vector<std::uint32_t> ring_of(const CollapseMesh& mesh, std::uint32_t v) {
@@ -92,7 +79,6 @@ template <class Placement>
 class Parts {
  public:
   explicit Parts(const IndexedFaceSet& shape, std::size_t count) : mesh_(mesh_of(shape)) {
-    mesh_.vertices[mesh_.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
     detail::sum_quadrics(mesh_, {});
     limits_.cos_deviation = std::cos(1.3f);
     labels_ = detail::divide(mesh_, count);

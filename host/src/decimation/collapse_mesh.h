@@ -73,7 +73,8 @@ class CollapseMesh {
 
   static constexpr unsigned kSeamShift = 8;  // of the tags
 
-  /// Where the half-edge of a face after that at a corner starts, and the one before it.
+  /// Where the half-edge of a face after that at a corner starts, and the one before it. From a table it is
+  /// fewer instructions than next() and previous(), and a longer wait.
   static constexpr std::array<std::uint8_t, 4> kNextCorner = {1, 2, 0, 0}, kPreviousCorner = {2, 0, 1, 0};
 
   static constexpr std::size_t kMaxFaces = std::size_t{1} << 29;

@@ -346,9 +346,8 @@ class EdgeCollapses {
     for (; i < end; ++i) {
       const std::uint32_t h = b.ids[i], corner = h & 3u;
       const CollapseMesh::Face& face = faces[h >> 2];
-      const std::uint32_t tags = face.tags >> corner, is = tags & static_cast<std::uint32_t>(face.alive()),
-                          live = 0 - is;
-      if ((tags & seam & live) != 0) [[unlikely]] {
+      const std::uint32_t is = is_live(face, h), live = 0 - is;  // all bits
+      if ((face.tags >> corner & seam & live) != 0) [[unlikely]] {
         share_->handed_on.push_back(h);
         continue;
       }
