@@ -1,4 +1,4 @@
-// Whether a collapse would fold faces over.
+// Whether a collapse would fold faces over, and how far it moves them.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace vkmesh::detail {
 
-/// The faces around the ends p and q of an edge that remain when it collapses, and how they turn.
+/// The faces around the ends p and q of an edge that remain when it collapses, how they turn and how far they move.
 ///
 /// The corners go once around both ends, so that each consecutive two span a face and neighbours among the
 /// faces follow each other. Two corners at the same place, or one at no place, span nothing.
