@@ -11,7 +11,8 @@
 
 namespace vkmesh::detail {
 
-/// The faces around the ends p and q of an edge that remain when it collapses, how they turn and how far they move.
+/// The faces around the ends p and q of an edge that remain when it collapses, how they turn and how far they
+/// move.
 ///
 /// The corners go once around both ends, so that each consecutive two span a face and neighbours among the
 /// faces follow each other. Two corners at the same place, or one at no place, span nothing.
