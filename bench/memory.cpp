@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <new>
 
 #if defined(__GLIBC__)
@@ -24,26 +25,33 @@ void count(std::ptrdiff_t bytes) {
   }
 }
 
-// Each block stands behind as many bytes as it is aligned to, the last of which tell its size.
+// What is kept right before each block. Blocks are aligned here: what aligned_alloc frees glibc does not use
+// again for the next of that kind, whose pages would be new ones each time.
+struct Kept {
+  void* start;
+  std::size_t size;
+};
 
-std::size_t* size_before(void* block) {
-  return static_cast<std::size_t*>(block) - 1;
+Kept* kept_before(void* block) {
+  return static_cast<Kept*>(block) - 1;
 }
 
 void* allocate(std::size_t size, std::size_t alignment) {
-  const std::size_t room = (size + 2 * alignment - 1) / alignment * alignment;
-  void* const start = room < size ? nullptr : std::aligned_alloc(alignment, room);
+  std::size_t room = size + sizeof(Kept) + alignment;
+  void* const start = room < size ? nullptr : std::malloc(room);
   if (start == nullptr) throw std::bad_alloc();
-  void* const block = static_cast<std::byte*>(start) + alignment;
-  *size_before(block) = size;
+  void* block = static_cast<std::byte*>(start) + sizeof(Kept);
+  room -= sizeof(Kept);
+  std::align(alignment, size, block, room);
+  *kept_before(block) = {start, size};
   count(static_cast<std::ptrdiff_t>(size));
   return block;
 }
 
-void release(void* block, std::size_t alignment) {
+void release(void* block) {
   if (block == nullptr) return;
-  count(-static_cast<std::ptrdiff_t>(*size_before(block)));
-  std::free(static_cast<std::byte*>(block) - alignment);
+  count(-static_cast<std::ptrdiff_t>(kept_before(block)->size));
+  std::free(kept_before(block)->start);
 }
 
 std::size_t at_least_default(std::align_val_t alignment) {
@@ -78,14 +86,14 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
   return vkmesh::bench::allocate(size, vkmesh::bench::at_least_default(alignment));
 }
 void operator delete(void* block) noexcept {
-  vkmesh::bench::release(block, vkmesh::bench::kDefault);
+  vkmesh::bench::release(block);
 }
-void operator delete(void* block, std::align_val_t alignment) noexcept {
-  vkmesh::bench::release(block, vkmesh::bench::at_least_default(alignment));
+void operator delete(void* block, std::align_val_t) noexcept {
+  vkmesh::bench::release(block);
 }
 void operator delete(void* block, std::size_t) noexcept {
   operator delete(block);
 }
-void operator delete(void* block, std::size_t, std::align_val_t alignment) noexcept {
-  operator delete(block, alignment);
+void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
+  operator delete(block);
 }

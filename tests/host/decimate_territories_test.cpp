@@ -88,10 +88,9 @@ class Parts {
           Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kSeam)));
     for (std::uint32_t h = 0; h < mesh_.half_edge_bound(); h += 4) detail::mark_seam(labels_, mesh_.face(h));
     worker_.work_on(*shares_.back());
-    worker_.fill([](const CollapseMesh::Face&) {},
-                 [&](std::uint32_t h, float cost) {
-                   const std::size_t part = mesh_.at_seam(h) ? count : labels_[mesh_.origin(h)] & ~kInner;
-                   shares_[part]->queue.insert(h, cost);
+    worker_.fill([&](CollapseMesh::Face& face) { return detail::mark_seam(labels_, face); },
+                 [&](std::uint8_t part, std::uint32_t h, float cost) {
+                   shares_[part == Territory::kSeam ? count : part]->queue.insert(h, cost);
                  });
   }
 
@@ -282,8 +281,19 @@ TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimat
   decltype(worker)::Share share(all.state, 0);
   worker.work_on(share);
   std::vector<int> prepared(all.mesh.face_count()), times(all.mesh.half_edge_bound());
-  worker.fill([&](const CollapseMesh::Face& face) { ++prepared[face.source]; },
-              [&](std::uint32_t h, float) { ++times[h]; });
+  std::size_t misnumbered = 0;
+  const auto number = [](std::uint32_t h) { return static_cast<std::uint8_t>(37 * h); };
+  worker.fill(
+      [&](const CollapseMesh::Face& face) {
+        ++prepared[face.source];
+        const std::uint32_t h = 4 * face.source;
+        return std::array<std::uint8_t, 3>{number(h), number(h + 1), number(h + 2)};
+      },
+      [&](std::uint8_t given, std::uint32_t h, float) {
+        ++times[h];
+        misnumbered += given == number(h) ? 0 : 1;
+      });
+  CHECK(misnumbered == 0);
   CHECK(std::ranges::count(prepared, 1) == static_cast<std::ptrdiff_t>(prepared.size()));
   std::size_t wrong = 0;
   for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h) {

@@ -281,7 +281,7 @@ std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32
       beyond[b][c] = h + 1;
   }
   const std::array<std::uint32_t, 2> gone = {record[taken], record[ghost == kInvalid ? n - 1 : n - 2]};
-  for (const std::uint32_t f : gone) faces_[f].origin[0] = kInvalid;
+  for (const std::uint32_t f : gone) remove(f);
   return {faces_[gone[0]].source, faces_[gone[1]].source};
 }
 

@@ -41,12 +41,29 @@ struct alignas(64) CollapseVertex {
 
   /// Moves the point about which the quadric is expressed.
   [[gnu::always_inline]] void shift(const std::array<float, 3>& d) {
+#if defined(__GNUC__) || defined(__clang__)
+    // The same sums, three at a time.
+    using Four = float __attribute__((vector_size(16)));
+    const auto four_at = [](const float* from) {
+      Four four;
+      __builtin_memcpy(&four, from, sizeof four);
+      return four;
+    };
+    const Four second = four_at(&a[1]), third = four_at(&a[2]), old = four_at(b.data());
+    const Four ad = four_at(a.data()) * d[0] + __builtin_shufflevector(second, second, 0, 2, 3, 3) * d[1] +
+                    __builtin_shufflevector(third, third, 0, 2, 3, 3) * d[2];
+    const Four along = Four{d[0], d[1], d[2], 0} * (ad + 2 * old);
+    const float sum = c + along[0] + along[1] + along[2];
+    const Four now = old + ad;
+    b = {now[0], now[1], now[2]};
+#else
     const std::array<float, 3> ad = {a[0] * d[0] + a[1] * d[1] + a[2] * d[2],
                                      a[1] * d[0] + a[3] * d[1] + a[4] * d[2],
                                      a[2] * d[0] + a[4] * d[1] + a[5] * d[2]};
     const float sum = c + d[0] * (ad[0] + 2 * b[0]) + d[1] * (ad[1] + 2 * b[1]) + d[2] * (ad[2] + 2 * b[2]);
-    c = sum > 0 ? sum : 0.0f;
     for (std::size_t k = 0; k < 3; ++k) b[k] += ad[k];
+#endif
+    c = sum > 0 ? sum : 0.0f;
   }
 };
 static_assert(sizeof(CollapseVertex) == 64);
@@ -63,7 +80,7 @@ class CollapseMesh {
   struct alignas(32) Face {
     std::array<std::uint32_t, 3> origin;
     /// Bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked; bit 8 + i: an end of it is
-    /// on the seam between parts.
+    /// on the seam between parts. A face that is gone has none.
     std::uint32_t tags;
     std::array<std::uint32_t, 3> twin;
     std::uint32_t source;  // its number in the input
@@ -187,9 +204,15 @@ class CollapseMesh {
     } while (h != vertices[v].leading);
   }
 
+  struct Collapsed {
+    unsigned faces;  ///< How many of the two faces were the mesh's own.
+    /// Half-edges, the first from the vertex that is left, that have become the two of one edge: two edges
+    /// were one of each.
+    std::array<std::array<std::uint32_t, 2>, 2> joined;
+  };
   /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. The link
-  /// condition must hold. Returns how many of the two faces were the mesh's own. O(valence of p).
-  unsigned collapse(std::uint32_t h) {
+  /// condition must hold. O(valence of p).
+  Collapsed collapse(std::uint32_t h) {
     const std::uint32_t t = twin(h);
     const std::uint32_t p = origin(h), q = origin(t);
     const std::uint32_t q_to_a = next(h), a_to_p = previous(h);
@@ -197,25 +220,28 @@ class CollapseMesh {
     for (std::uint32_t out = around_vertex(h); out != h; out = around_vertex(out))
       faces_[out >> 2].origin[out & 3u] = q;
 
-    const std::uint32_t a_out = twin(q_to_a), b_out = twin(p_to_b);  // a → q and b → p, which b → q becomes
+    // p → a, now q → a, and a → q; q → b, and b → p, which b → q becomes.
+    const Collapsed result = {(is_ghost(h) ? 0u : 1u) + (is_ghost(t) ? 0u : 1u),
+                              {{{twin(a_to_p), twin(q_to_a)}, {twin(b_to_q), twin(p_to_b)}}}};
+    const auto& [to_a, from_a] = result.joined[0];
+    const auto& [to_b, from_b] = result.joined[1];
     const std::uint32_t a = origin(a_to_p), b = origin(b_to_q);
-    vertices[q].leading = twin(a_to_p);  // p → a, now q → a
-    if (a != apex_) vertices[a].leading = a_out;
-    if (b != apex_) vertices[b].leading = b_out;
+    vertices[q].leading = to_a;
+    if (a != apex_) vertices[a].leading = from_a;
+    if (b != apex_) vertices[b].leading = from_b;
     vertices[p].leading = CollapseVertex::kGone | q;
-    set_twins(a_out, twin(a_to_p));
-    set_twins(b_out, twin(b_to_q));
-    const unsigned own = (is_ghost(h) ? 0u : 1u) + (is_ghost(t) ? 0u : 1u);
-    faces_[h >> 2].origin[0] = kInvalid;
-    faces_[t >> 2].origin[0] = kInvalid;
-    return own;
+    set_twins(from_a, to_a);
+    set_twins(from_b, to_b);
+    remove(h >> 2);
+    remove(t >> 2);
+    return result;
   }
 
   /// Takes away a face of the mesh and the ghosts at it; the rest of its component must go too.
   void erase_with_ghosts(std::uint32_t f) {
     for (const std::uint32_t t : faces_[f].twin)
-      if (is_ghost(t)) faces_[t >> 2].origin[0] = kInvalid;
-    faces_[f].origin[0] = kInvalid;
+      if (is_ghost(t)) remove(t >> 2);
+    remove(f);
   }
 
   static constexpr std::size_t kMostAtHole = 17;
@@ -233,6 +259,10 @@ class CollapseMesh {
   LargeArray<CollapseVertex> vertices;
 
  private:
+  void remove(std::uint32_t f) {
+    faces_[f].origin[0] = kInvalid;
+    faces_[f].tags = 0;
+  }
   void set_twins(std::uint32_t a, std::uint32_t b) {
     faces_[a >> 2].twin[a & 3u] = b;
     faces_[b >> 2].twin[b & 3u] = a;

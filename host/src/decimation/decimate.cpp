@@ -14,17 +14,14 @@
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_order.h"
-#include "decimation/collapse_queues.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
-#include "decimation/edge_collapses.h"
 #include "decimation/frame.h"
 #include "decimation/gather_result.h"
-#include "decimation/parted_collapses.h"
 #include "decimation/prune.h"
 #include "decimation/quadric_sums.h"
+#include "decimation/runs.h"
 #include "decimation/spatial_order.h"
-#include "decimation/vertex_removals.h"
 #include "decimation/wedges.h"
 #include "parallel.h"
 
@@ -32,33 +29,6 @@ namespace vkmesh {
 namespace {
 
 using namespace detail;
-
-template <class Placement, bool kAttributes>
-Result<Outcome> run_collapses(DecimationState& state, bool exact, const Progress& progress) {
-  if (state.criteria != nullptr && state.criteria->ranks())
-    return run_removals<PartedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state, progress);
-  if constexpr (Placement::kMayFall != MayFall::kAll)
-    if (!exact) return run_removals<PartedCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
-  return run_removals<PartedCollapses<Placement, ExactQueue, kAttributes>>(state, progress);
-}
-
-template <bool kAttributes>
-Result<Outcome> run_vertex_removals(DecimationState& state, bool exact, const Progress& progress) {
-  if (exact || (state.criteria != nullptr && state.criteria->ranks()))
-    return run_removals<VertexRemovals<ExactQueue, kAttributes>>(state, progress);
-  return run_removals<VertexRemovals<LazyQueue, kAttributes>>(state, progress);
-}
-
-template <bool kAttributes>
-Result<Outcome> run_edge_collapses(DecimationState& state, const DecimateOptions& options, bool exact,
-                                   const Progress& progress) {
-  if (options.operation == DecimateOperation::kHalfEdgeCollapse ||
-      options.placement == CollapsePlacement::kEndpoint)
-    return run_collapses<EndPlacement, kAttributes>(state, exact, progress);
-  if (options.placement == CollapsePlacement::kMidpoint)
-    return run_collapses<MidpointPlacement, kAttributes>(state, exact, progress);
-  return run_collapses<OptimalPlacement, kAttributes>(state, exact, progress);
-}
 
 Result<Outcome> run(DecimationState& state, const DecimateOptions& options, CollapseOrder order,
                     const Progress& progress) {

@@ -109,49 +109,50 @@ class EdgeCollapses {
   /// About how many removals one step tries.
   static constexpr std::size_t kStep = Queue::kBatch;
 
-  /// Calls prepare(face) for all faces on any threads, and then put(half-edge, cost) for all edges.
+  /// Calls prepare(face) for all faces on any threads, which returns a number for each of its half-edges, and
+  /// then put(number, half-edge, cost) for one half-edge of each edge.
   template <class Prepare, class Put>
   void fill(Prepare&& prepare, Put&& put) {
     constexpr std::uint32_t kAhead = 64;
-    constexpr std::size_t kGrain = 1 << 12;
-    struct Block {
-      std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(3 * kGrain + 1);
-      std::vector<float> cost = std::vector<float>(3 * kGrain);
-      EdgeBatch batch;
-      Star star;
-      std::size_t count = 0;
-    };
     const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
-    const auto make = [this, &prepare, last](std::size_t begin, std::size_t end, Block& block) {
-      block.count = 0;
+    const auto make = [this, &prepare, last](std::size_t begin, std::size_t end, First& block) {
       CollapseMesh::Face* const faces = &mesh_.face(0);
       const CollapseVertex* const vertices = vertices_.data();
+      std::uint32_t *const ids = block.ids.data(), *const from = block.from.data(),
+                           *const to = block.to.data();
+      std::uint8_t* const numbers = block.number.data();
+      std::size_t count = 0;
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
         for (const std::uint32_t v : faces[std::min(f + kAhead, last)].origin) prefetch(&vertices[v]);
         CollapseMesh::Face& face = faces[f];
         if (!face.alive()) continue;
-        prepare(face);
+        const std::array<std::uint8_t, 3> number = prepare(face);
         std::uint32_t tags = 0;
         for (std::uint32_t i = 0; i < 3; ++i) {
           const std::uint32_t h = 4 * f + i;
           const std::uint32_t first = h < face.twin[i] ? 1 : 0;  // half of them; nothing foretells which
           tags |= first << i;
-          block.ids[block.count] = h;
-          block.count += first;
+          ids[count] = h;
+          from[count] = face.origin[i];
+          to[count] = face.origin[i < 2 ? i + 1 : 0];
+          numbers[count] = number[i];
+          count += first;
         }
         face.tags |= tags;
       }
-      for (std::size_t i = 0; i < block.count; i += EdgeBatch::kSize) {
-        const std::size_t some = std::min(EdgeBatch::kSize, block.count - i);
-        const auto ids = std::span(block.ids).subspan(i, some);
-        evaluate(ids, block.batch);
-        rank(ids, block.batch, block.star, &block.cost[i]);
+      block.count = count;
+      for (std::size_t i = 0; i < count; i += EdgeBatch::kSize) {
+        const auto some = std::span(block.ids).subspan(i, std::min(EdgeBatch::kSize, count - i));
+        evaluate(some, block.batch, [i, from, to, vertices](std::size_t k) {
+          return std::pair(&vertices[from[i + k]], &vertices[to[i + k]]);
+        });
+        rank(some, block.batch, block.star, &block.cost[i]);
       }
     };
-    const auto finish = [&](std::size_t, std::size_t, Block& block) {
-      for (std::size_t i = 0; i < block.count; ++i) put(block.ids[i], block.cost[i]);
+    const auto finish = [&](std::size_t, std::size_t, First& block) {
+      for (std::size_t i = 0; i < block.count; ++i) put(block.number[i], block.ids[i], block.cost[i]);
     };
-    parallel_in_order<Block>(mesh_.face_count(), kGrain, make, finish);
+    parallel_in_order<First>(mesh_.face_count(), kFirstFaces, make, finish);
   }
 
   /// Steps while anything is due by `last`, a bucket of the queue, and no limit is met.
@@ -184,8 +185,8 @@ class EdgeCollapses {
       evaluate(*next);
       if (now->count == 0 && next->count == 0 && later->count == 0) {
         take(*now);
-        fetch(*now, kAll);
-        look_at(*now, kAll);
+        fetch_faces(*now, kAll);
+        fetch_ends(*now, kAll);
         evaluate(*now);
       }
       walk(*now, kAll);
@@ -212,17 +213,35 @@ class EdgeCollapses {
   }
 
  private:
+  static constexpr std::size_t kFirstFaces = 1 << 12;
+  // Edges of so many faces, and from where to where they go.
+  struct First {
+    static constexpr std::size_t kMost = 3 * kFirstFaces + 1;  // one more is written
+    std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(kMost);
+    std::vector<std::uint32_t> from = std::vector<std::uint32_t>(kMost);
+    std::vector<std::uint32_t> to = std::vector<std::uint32_t>(kMost);
+    std::vector<std::uint8_t> number = std::vector<std::uint8_t>(kMost);
+    std::vector<float> cost = std::vector<float>(kMost);
+    EdgeBatch batch;
+    Star star;
+    std::size_t count = 0;
+  };
+
   // The edges of these half-edges, into the batch.
-  void evaluate(std::span<const std::uint32_t> edges) { evaluate(edges, batch_); }
-  void evaluate(std::span<const std::uint32_t> edges, EdgeBatch& batch) const {
+  void evaluate(std::span<const std::uint32_t> edges) {
     const CollapseMesh::Face* const faces = mesh_.faces();
     const CollapseVertex* const vertices = vertices_.data();
-    batch.gather(edges.size(), [edges, faces, vertices](std::size_t i) {
+    evaluate(edges, batch_, [edges, faces, vertices](std::size_t i) {
       const CollapseMesh::Face& face = faces[edges[i] >> 2];
       const std::uint32_t corner = edges[i] & 3u;
       return std::pair(&vertices[face.origin[corner]],
                        &vertices[face.origin[CollapseMesh::kNextCorner[corner]]]);
     });
+  }
+  // ends(i): the vertices of edge i.
+  template <class Ends>
+  void evaluate(std::span<const std::uint32_t> edges, EdgeBatch& batch, Ends&& ends) const {
+    batch.gather(edges.size(), ends);
     if constexpr (kAttributes && Placement::kAtEnds) {
       EndCosts end_costs;
       share_->state.attributes->add_to_ends(batch, edges, end_costs);
@@ -300,24 +319,29 @@ class EdgeCollapses {
     std::array<std::uint32_t, kWalked> vertex;  // the first `size` are meant
     std::uint32_t size;                         // kTooLong when there are more
   };
+  /// A walk around an end of an edge: at which half-edge it is, where it ends, and the ring that it makes.
+  struct Walk {
+    std::uint32_t at, start;
+    Walked* ring;
+  };
 
   /// Edges on their way from the queue to their collapse. What a batch waits for from memory comes while the
   /// batches before it are worked on: four are on their way, one behind the other. What those before it have
   /// changed meanwhile is known by its marks: such an edge goes back, such a ring is walked again.
   struct Pending {
-    std::array<std::uint32_t, Queue::kBatch> ids;  // `count` were taken, of them `live` stay
-    std::size_t count = 0, fetched = 0, looked_at = 0, live = 0;
+    std::array<std::uint32_t, Queue::kBatch> ids;  // `count` were taken
+    std::size_t count = 0, faces_fetched = 0, ends_fetched = 0;
     std::array<Due, Queue::kBatch> due;
     std::size_t due_count = 0;
-    std::array<Walked, 2 * Queue::kBatch> walked;                  // those of p and q of each due edge
-    std::array<std::uint32_t, 2 * Queue::kBatch> at, start, walk;  // of `walks` under way
+    std::array<Walked, 2 * Queue::kBatch> walked;  // those of p and q of each due edge
+    std::array<Walk, 2 * Queue::kBatch> walk;      // `walks` under way
     std::size_t walks = 0, walker = 0, go_on = 0;
     std::uint32_t steps = 0;
     std::size_t tried = 0;
     bool evaluated = false;
 
     void reset() {
-      count = fetched = looked_at = live = due_count = walks = tried = 0;
+      count = faces_fetched = ends_fetched = due_count = walks = tried = 0;
       evaluated = false;
     }
   };
@@ -328,58 +352,50 @@ class EdgeCollapses {
   void take(Pending& b) { b.count = share_->queue.take(b.ids, share_->last); }
 
   /// The faces of `some` more of those taken.
-  void fetch(Pending& b, std::size_t some) {
-    const std::size_t end = some < b.count - b.fetched ? b.fetched + some : b.count;
+  void fetch_faces(Pending& b, std::size_t some) {
+    const std::size_t end = some < b.count - b.faces_fetched ? b.faces_fetched + some : b.count;
     const CollapseMesh::Face* const faces = mesh_.faces();
-    for (std::size_t i = b.fetched; i < end; ++i) prefetch(&faces[b.ids[i] >> 2]);
-    b.fetched = end;
+    for (std::size_t i = b.faces_fetched; i < end; ++i) prefetch(&faces[b.ids[i] >> 2]);
+    b.faces_fetched = end;
   }
 
-  /// At `some` more of those taken.
-  void look_at(Pending& b, std::size_t some) {
-    // Conditions that cannot be foretold count, and do not jump.
-    const std::size_t end = some < b.count - b.looked_at ? b.looked_at + some : b.count;
-    const std::uint32_t seam = share_->territory.is_part() ? 1u << CollapseMesh::kSeamShift : 0;
+  /// The ends of `some` more of those taken.
+  void fetch_ends(Pending& b, std::size_t some) {
+    const std::size_t end = some < b.count - b.ends_fetched ? b.ends_fetched + some : b.count;
     const CollapseMesh::Face* const faces = mesh_.faces();
     const CollapseVertex* const vertices = vertices_.data();
-    std::size_t kept = b.live, i = b.looked_at;
-    for (; i < end; ++i) {
+    for (std::size_t i = b.ends_fetched; i < end; ++i) {
       const std::uint32_t h = b.ids[i], corner = h & 3u;
       const CollapseMesh::Face& face = faces[h >> 2];
-      const std::uint32_t is = is_live(face, h), live = 0 - is;  // all bits
-      if ((face.tags >> corner & seam & live) != 0) [[unlikely]] {
-        share_->handed_on.push_back(h);
-        continue;
-      }
-      b.ids[kept] = h;
-      kept += is;
-      prefetch(&vertices[face.origin[corner] & live]);
-      prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & live]);
+      // All bits where it is: nothing foretells it, so there is no jump.
+      const std::uint32_t queued = 0 - (face.tags >> corner & 1u);
+      prefetch(&vertices[face.origin[corner] & queued]);
+      prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & queued]);
     }
-    b.looked_at = i;
-    b.live = kept;
-  }
-
-  /// 1 or 0.
-  [[nodiscard]] static std::uint32_t is_live(const CollapseMesh::Face& face, std::uint32_t h) {
-    return face.tags >> (h & 3u) & static_cast<std::uint32_t>(face.alive());
+    b.ends_fetched = end;
   }
 
   /// Tells those that are due from those that go back at what they cost now.
   void evaluate(Pending& b) {
     if (b.count == 0) return;
+    // Conditions that cannot be foretold count, and do not jump.
     std::size_t live = 0;
+    const std::uint32_t seam = share_->territory.is_part() ? 1u << CollapseMesh::kSeamShift : 0;
     const CollapseMesh::Face* const faces = mesh_.faces();
-    for (const std::uint32_t h : std::span(b.ids).first(b.live)) {
+    for (const std::uint32_t h : std::span(b.ids).first(b.count)) {
+      const std::uint32_t tags = faces[h >> 2].tags >> (h & 3u), queued = tags & 1u;
+      if ((tags & seam) != 0) [[unlikely]] {
+        if (queued != 0) share_->handed_on.push_back(h);
+        continue;
+      }
       b.ids[live] = h;
-      live += is_live(faces[h >> 2], h);
+      live += queued;
     }
     const auto ids = std::span(b.ids).first(live);
     evaluate(ids);
     const float* const ranks = ranks_of(ids);
     b.evaluated = true;
     b.due_count = 0;
-    // Sorted out with no jump, which could not be foretold.
     std::array<std::uint8_t, Queue::kBatch> is_due, due, others;
     for (std::size_t i = 0; i < ids.size(); ++i) is_due[i] = share_->queue.is_due(ids[i], ranks[i]) ? 1 : 0;
     std::size_t other_count = 0;
@@ -392,13 +408,12 @@ class EdgeCollapses {
     for (const std::uint8_t i : std::span(others).first(other_count)) share_->queue.insert(ids[i], ranks[i]);
     b.walks = 2 * b.due_count;
     b.walker = b.go_on = b.steps = 0;
-    for (std::size_t i = 0; i < b.due_count; ++i) {
+    for (std::uint32_t i = 0; i < b.due_count; ++i) {
       const std::uint32_t h = b.due[i].half_edge, t = mesh_.twin(h);
       prefetch(&mesh_.face(t));
-      b.at[2 * i] = b.start[2 * i] = h;
-      b.at[2 * i + 1] = b.start[2 * i + 1] = t;
+      b.walk[2 * i] = {h, h, &b.walked[2 * i]};
+      b.walk[2 * i + 1] = {t, t, &b.walked[2 * i + 1]};
     }
-    for (std::uint32_t i = 0; i < b.walks; ++i) b.walk[i] = i;
   }
 
   /// Walks around the ends of all due edges, one step of each in turn: one waits for all. `some` more steps.
@@ -408,30 +423,30 @@ class EdgeCollapses {
     while (some > 0 && b.walks > 0) {
       const std::size_t end = some < b.walks - b.walker ? b.walker + some : b.walks;
       some -= end - b.walker;
-      std::size_t left = b.go_on;
+      const Walk* walk = &b.walk[b.walker];
+      const Walk* const last = walk + (end - b.walker);
+      Walk* left = &b.walk[b.go_on];
       const std::uint32_t steps = b.steps;
-      for (std::size_t i = b.walker; i < end; ++i) {
-        const std::uint32_t w = b.walk[i], at = b.at[i], corner = CollapseMesh::kPreviousCorner[at & 3u];
+      for (; walk != last; ++walk) {
+        const auto [at, start, ring] = *walk;
+        const std::uint32_t corner = CollapseMesh::kPreviousCorner[at & 3u];
         const CollapseMesh::Face& face = faces[at >> 2];
         const std::uint32_t out = face.twin[corner], v = face.origin[corner];
         prefetch(&vertices[v]);
         prefetch(&faces[out >> 2]);
-        Walked& walked = b.walked[w];
-        walked.vertex[steps] = v;
+        ring->vertex[steps] = v;
         // What an earlier batch takes away meanwhile leads to where it lay.
-        const std::uint32_t gone = v == kInvalid ? kTooLong : 0;
-        walked.size = steps | gone;
-        b.at[left] = out;
-        b.walk[left] = w;
-        left += static_cast<std::size_t>(out != b.start[w]) & static_cast<std::size_t>(gone == 0);
+        ring->size = v == kInvalid ? kTooLong : steps;
+        *left = {out, start, ring};
+        left += static_cast<std::size_t>(out != start) & static_cast<std::size_t>(v != kInvalid);
       }
-      b.go_on = left;
+      b.go_on = static_cast<std::size_t>(left - b.walk.data());
       b.walker = end;
       if (end < b.walks) return;
-      b.walks = left;
+      b.walks = b.go_on;
       b.walker = b.go_on = 0;
       if (++b.steps < kWalked) continue;
-      for (std::size_t i = 0; i < b.walks; ++i) b.walked[b.walk[i]].size = kTooLong;
+      for (std::size_t i = 0; i < b.walks; ++i) b.walk[i].ring->size = kTooLong;
       b.walks = 0;
     }
   }
@@ -452,14 +467,12 @@ class EdgeCollapses {
       for (std::size_t i = b->tried; i < b->due_count; ++i) put_back(b->due[i].half_edge);
       // Those that were evaluated are due, or in the queue again.
       if (!b->evaluated)
-        for (const std::uint32_t h : std::span(b->ids).first(b->live)) put_back(h);
-      for (const std::uint32_t h : std::span(b->ids).subspan(b->looked_at, b->count - b->looked_at))
-        put_back(h);
+        for (const std::uint32_t h : std::span(b->ids).first(b->count)) put_back(h);
       b->reset();
     }
   }
   void put_back(std::uint32_t h) {
-    if (mesh_.alive(h) && mesh_.queued(h)) enqueue_now(h);
+    if (mesh_.queued(h)) enqueue_now(h);
   }
   void forget_touched() {
     for (auto* touched : {&before_, &touched_}) {
@@ -470,21 +483,22 @@ class EdgeCollapses {
 
   /// Of what is taken a fifth is due, and a ring has six vertices or so. Numbers that stay the same can be
   /// foretold.
-  static constexpr std::size_t kLooks = 6, kWalkSteps = 16;
+  static constexpr std::size_t kFetches = 12, kWalkSteps = 32;
 
   /// Tries the edges of the first batch, and in between brings on the others a little.
   void serve(Pending& now, Pending& next, Pending& later, Pending& last) {
     for (; now.tried < now.due_count && !share_->state.reached(); ++now.tried) {
       attempt(now, now.tried);
+      if (now.tried % 2 == 0) continue;
       walk(next, kWalkSteps);
-      look_at(later, kLooks);
-      fetch(last, kLooks);
+      fetch_ends(later, kFetches);
+      fetch_faces(last, kFetches);
     }
     for (const std::uint32_t h : std::span(again_).first(again_count_)) enqueue_now(h);
     again_count_ = 0;
     walk(next, kAll);
-    look_at(later, kAll);
-    fetch(last, kAll);
+    fetch_ends(later, kAll);
+    fetch_faces(last, kAll);
     // What the last batch touched is known now to the rings of this one.
     for (const std::uint32_t v : before_) vertices_[v].source &= ~CollapseVertex::kTouched;
     before_.clear();
@@ -517,7 +531,7 @@ class EdgeCollapses {
   void attempt(const Pending& b, std::size_t i) {
     const Due& due = b.due[i];
     const std::uint32_t h = due.half_edge;
-    if (!mesh_.alive(h) || !mesh_.queued(h)) return;
+    if (!mesh_.queued(h)) return;
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
     if (vertices_[p].has(CollapseVertex::kTouched) || vertices_[q].has(CollapseVertex::kTouched)) {
       share_->queue.insert_now(h);
@@ -648,6 +662,10 @@ class EdgeCollapses {
     CollapseVertex &kept = keep_p ? vp : vq, &gone = keep_p ? vq : vp;
     const std::uint32_t q_now = keep_p ? p : q;
 
+    if constexpr (Placement::kMayFall == MayFall::kOfGone) {
+      collect_moved(h);
+      price_moved(gone, kept, due.cost);
+    }
     std::array<float, 3> dk, dg;
     for (std::size_t k = 0; k < 3; ++k) {
       dk[k] = place[k] - kept.position[k];
@@ -685,11 +703,8 @@ class EdgeCollapses {
       share_->state.criteria->keep(star_);
     erase_queued(h);
     erase_queued(t);
-    const std::uint32_t to_a = mesh_.twin(CollapseMesh::previous(h)),
-                        from_a = mesh_.twin(CollapseMesh::next(h));
-    const std::uint32_t to_b = mesh_.twin(CollapseMesh::previous(t)),
-                        from_b = mesh_.twin(CollapseMesh::next(t));
-    share_->state.faces -= mesh_.collapse(h);
+    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h);
+    share_->state.faces -= collapsed.faces;
     --share_->state.vertices;
     ++share_->state.outcome.collapses;
     if (kept.weight > 0)
@@ -697,12 +712,10 @@ class EdgeCollapses {
           share_->state.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
     if (share_->territory.is_seam())
       share_->territory.merge(mesh_, keep_p ? q : p, q_now, keep_p ? rings.q : rings.p);
-    join(to_a, from_a);
-    join(to_b, from_b);
+    for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
     if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
     if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(q_now);
-    if constexpr (Placement::kMayFall == MayFall::kOfGone)
-      refresh(q_now, keep_p ? rings.q.size() : rings.p.size());
+    if constexpr (Placement::kMayFall == MayFall::kOfGone) put_moved();
     revive(q_now, rings);
   }
 
@@ -723,6 +736,72 @@ class EdgeCollapses {
     again_count_ += state == CollapseMesh::kNoneQueued ? 1 : 0;
   }
 
+  void put(std::uint32_t h, float cost) {
+    if (is_mine(h))
+      share_->queue.insert(h, cost);
+    else
+      share_->handed_on.push_back(h);
+  }
+
+  /// An edge at a vertex that goes, by the half-edge that is queued for it, and the vertex at its other end.
+  struct Moved {
+    std::uint32_t half_edge, end;
+    float cost;
+    bool is_less;
+  };
+
+  // The edges at the origin of h that are queued and will stay.
+  void collect_moved(std::uint32_t h) {
+    const std::uint32_t t = mesh_.twin(h);
+    moved_.clear();
+    for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out)) {
+      const std::uint32_t in = mesh_.twin(out), id = mesh_.queued(out) ? out : in;
+      const bool stays = ((id ^ h) >> 2 != 0) & ((id ^ t) >> 2 != 0);  // its face does
+      if (mesh_.queued(id) && stays) moved_.push_back({id, mesh_.origin(in), 0, false});
+    }
+  }
+
+  template <class F>
+  void for_each_batch(std::span<Moved> moved, F&& f) {
+    for (std::size_t i = 0; i < moved.size(); i += EdgeBatch::kSize)
+      f(moved.subspan(i, std::min(EdgeBatch::kSize, moved.size() - i)));
+  }
+  void evaluate_moved(std::span<const Moved> moved) {
+    std::array<std::uint32_t, EdgeBatch::kSize> ids;
+    for (std::size_t i = 0; i < moved.size(); ++i) ids[i] = moved[i].half_edge;
+    evaluate(std::span(ids).first(moved.size()));
+  }
+
+  // What they cost once `gone` has become `kept`, and whether that is less than they stand under in the
+  // queue. With attributes that is not to be had before.
+  void price_moved(const CollapseVertex& gone, const CollapseVertex& kept, float cost) {
+    for_each_batch(moved_, [&](std::span<Moved> moved) {
+      if constexpr (kAttributes) {
+        evaluate_moved(moved);
+      } else {
+        batch_.gather_q(moved.size(), [&](std::size_t i) { return &vertices_[moved[i].end]; });
+        find_moved_costs(batch_, gone, kept, cost, moved.size());
+      }
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        moved[i].cost = batch_.cost[i];
+        moved[i].is_less = batch_.end[i] != 0;
+      }
+    });
+  }
+
+  void put_moved() {
+    if constexpr (kAttributes)
+      for_each_batch(moved_, [&](std::span<Moved> moved) {
+        evaluate_moved(moved);
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+          moved[i].is_less = batch_.cost[i] < moved[i].cost;
+          moved[i].cost = batch_.cost[i];
+        }
+      });
+    for (const Moved& edge : moved_)
+      if (edge.is_less) put(edge.half_edge, edge.cost);
+  }
+
   // The first `edges` edges at v cost something else now. A vertex that has absorbed another has the edges of
   // that one first.
   void refresh(std::uint32_t v, std::size_t edges) {
@@ -737,12 +816,7 @@ class EdgeCollapses {
       }
       evaluate(std::span(ids).first(count));
       const float* const ranks = ranks_of(std::span(ids).first(count));
-      for (std::size_t i = 0; i < count; ++i) {
-        if (is_mine(ids[i]))
-          share_->queue.insert(ids[i], ranks[i]);
-        else
-          share_->handed_on.push_back(ids[i]);
-      }
+      for (std::size_t i = 0; i < count; ++i) put(ids[i], ranks[i]);
     }
   }
 
@@ -805,6 +879,7 @@ class EdgeCollapses {
   std::array<std::uint32_t, 2 * Queue::kBatch + 2> again_;
   std::size_t again_count_ = 0;
   std::vector<std::uint32_t> before_, touched_, sorted_, ring_p_, ring_q_;
+  std::vector<Moved> moved_;
   FaceTurns turns_;
   std::uint32_t ring_flags_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "decimation/face_turns.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -72,19 +73,25 @@ struct Move {
   float cos_deviation;
 };
 
-// Of the corners a and b and a third at 0, over the squared sides, so that no square leaves the range of a
-// float.
+// Of the corners a and b and a third at 0, over about the squared sides, so that no square leaves the range
+// of a float: a power of two, since to divide is slow.
 struct Normal {
   float x, y, z, length2;
+  float sides;  // the squared sides, in [1, 2) as a rule
 
   [[gnu::always_inline]] Normal(float ax, float ay, float az, float bx, float by, float bz) {
-    const float sides = 1.0f / ((ax * ax + ay * ay + az * az) + (bx * bx + by * by + bz * bz) + 1e-36f);
-    x = (ay * bz - az * by) * sides;
-    y = (az * bx - ax * bz) * sides;
-    z = (ax * by - ay * bx) * sides;
+    constexpr std::int32_t kExponent = 0x7f800000, kTwiceBias = 0x7f000000;
+    const float squared = (ax * ax + ay * ay + az * az) + (bx * bx + by * by + bz * bz) + 1e-36f;
+    const float scale = std::bit_cast<float>(kTwiceBias - (std::bit_cast<std::int32_t>(squared) & kExponent));
+    x = (ay * bz - az * by) * scale;
+    y = (az * bx - ax * bz) * scale;
+    z = (ax * by - ay * bx) * scale;
     length2 = x * x + y * y + z * z;
+    sides = squared * scale;
   }
-  [[nodiscard, gnu::always_inline]] bool exists() const { return length2 > kDegenerate * kDegenerate; }
+  [[nodiscard, gnu::always_inline]] bool exists() const {
+    return length2 > kDegenerate * kDegenerate * (sides * sides);
+  }
   [[nodiscard, gnu::always_inline]] float product(const Normal& n) const {
     return x * n.x + y * n.y + z * n.z;
   }
@@ -326,7 +333,7 @@ float FaceTurns::squared_distance(const Vector& p, const Vector& q, const Vector
 FaceTurns::Vector FaceTurns::normal(std::size_t face, const Vector& p, const Vector& x) const {
   const Vector u = corner(face, p, x), v = corner(face + 1, p, x);
   const Normal n(u[0], u[1], u[2], v[0], v[1], v[2]);
-  return n.exists() ? Vector{n.x, n.y, n.z} : Vector{};
+  return n.exists() ? Vector{n.x / n.sides, n.y / n.sides, n.z / n.sides} : Vector{};
 }
 
 /// Whether a face that had no area and has one now looks against the others.

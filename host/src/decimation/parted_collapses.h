@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -40,21 +41,20 @@ class PartedCollapses {
   }
 
   void fill() {
-    Worker& worker = mine();
+    CollapseMesh& mesh = state_.mesh;
     if (parts_.empty()) {
-      worker.fill([](CollapseMesh::Face&) {},
-                  [&](std::uint32_t h, float cost) { rest_->queue.fill(h, cost); });
+      mine().fill([](CollapseMesh::Face&) { return std::array<std::uint8_t, 3>{}; },
+                  [&](std::uint8_t, std::uint32_t h, float cost) { rest_->queue.fill(h, cost); });
       rest_->queue.start();
       return;
     }
-    CollapseMesh& mesh = state_.mesh;
-    const auto mark = [&](CollapseMesh::Face& face) { mark_seam(labels_, face); };
+    const auto mark = [&](CollapseMesh::Face& face) { return mark_seam(labels_, face); };
     for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
       if (CollapseMesh::Face& ghost = mesh.face(static_cast<std::uint32_t>(g)); ghost.alive()) mark(ghost);
-    worker.fill(mark, [&](std::uint32_t h, float cost) {
-      (mesh.at_seam(h) ? *rest_ : parts_[labels_[mesh.origin(h)] & ~Territory::kInner]->share)
-          .queue.insert(h, cost);
-    });
+    std::array<Queue*, Territory::kSeam + 1> queues{};
+    for (std::size_t i = 0; i < parts_.size(); ++i) queues[i] = &parts_[i]->share.queue;
+    queues[Territory::kSeam] = &rest_->queue;
+    mine().fill(mark, [&](std::uint8_t part, std::uint32_t h, float cost) { queues[part]->fill(h, cost); });
   }
 
   bool step() {

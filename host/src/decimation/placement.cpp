@@ -18,12 +18,14 @@ struct Lane {
   std::int32_t end;
 };
 
+// 1 or 0; by the flags among a vertex' words.
+[[gnu::always_inline]] inline std::int32_t is_locked(float source) {
+  return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(source) / CollapseVertex::kLocked & 1u);
+}
+
 [[gnu::always_inline]] inline Lane lane_of(const EdgeBatch& batch, std::size_t i) {
   const auto& p = batch.p;
   const auto& q = batch.q;
-  const auto locked = [](float source) {
-    return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(source) >> 28 & 1u);
-  };
   return {{p[5][i], p[6][i], p[7][i], p[8][i], p[9][i], p[10][i]},
           {q[5][i], q[6][i], q[7][i], q[8][i], q[9][i], q[10][i]},
           {p[12][i], p[13][i], p[14][i]},
@@ -31,7 +33,7 @@ struct Lane {
           {q[0][i] - p[0][i], q[1][i] - p[1][i], q[2][i] - p[2][i]},
           p[11][i],
           q[11][i],
-          locked(p[3][i]) + 2 * locked(q[3][i])};
+          is_locked(p[3][i]) + 2 * is_locked(q[3][i])};
 }
 
 // Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
@@ -152,6 +154,29 @@ VKMESH_CLONES void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::si
       batch, count, [&](float cost, std::size_t end, std::size_t i) __attribute__((always_inline)) {
         return cost + extra.at[end][i];
       });
+}
+
+VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const CollapseVertex& p, const CollapseVertex& q,
+                                    float cost, std::size_t count) {
+  const auto pa = p.a;
+  const auto pb = p.b;
+  const float pc = p.c;
+  const auto [px, py, pz] = p.position;
+  const auto [qx, qy, qz] = q.position;
+  for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
+    for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
+      const auto& r = batch.q;
+      const std::array<float, 6> ra = {r[5][i], r[6][i], r[7][i], r[8][i], r[9][i], r[10][i]};
+      const std::array<float, 3> rb = {r[12][i], r[13][i], r[14][i]};
+      const float rc = r[11][i], x = r[0][i], y = r[1][i], z = r[2][i];
+      const float at_q = value(ra, rb, rc, qx - x, qy - y, qz - z) + cost;
+      const float at_p = value(ra, rb, rc, px - x, py - y, pz - z) + pc,
+                  at_r = rc + value(pa, pb, pc, x - px, y - py, z - pz);
+      const std::int32_t locked = is_locked(r[3][i]);  // it stays at r then
+      const float now = at_p < at_r ? at_p : at_r;
+      batch.cost[i] = at_q;
+      batch.end[i] = at_q < now ? 1 - locked : 0;
+    }
 }
 
 }  // namespace vkmesh::detail

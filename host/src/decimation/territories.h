@@ -51,14 +51,20 @@ class Territory {
 /// O(n log parts).
 [[nodiscard]] std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts);
 
-/// Tells a face which of its edges are at the seam. No part may be at work before all faces know.
-inline void mark_seam(std::span<const std::uint8_t> labels, CollapseMesh::Face& face) {
+/// Tells a face which of its edges are at the seam, and returns for each who sees to it: a part, or
+/// Territory::kSeam. No part may be at work before all faces know.
+inline std::array<std::uint8_t, 3> mark_seam(std::span<const std::uint8_t> labels, CollapseMesh::Face& face) {
   const std::array<std::uint8_t, 3> at = {labels[face.origin[0]], labels[face.origin[1]],
                                           labels[face.origin[2]]};
-  const std::array<int, 3> inner = {at[0] & at[1], at[1] & at[2], at[2] & at[0]};
+  std::array<std::uint8_t, 3> owner;
   std::uint32_t seam = 0;
-  for (std::uint32_t i = 0; i < 3; ++i) seam |= ((inner[i] & Territory::kInner) == 0 ? 1u : 0u) << i;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const bool inner = (at[i] & at[i < 2 ? i + 1 : 0] & Territory::kInner) != 0;
+    seam |= (inner ? 0u : 1u) << i;
+    owner[i] = inner ? at[i] & ~Territory::kInner : Territory::kSeam;
+  }
   face.tags |= seam << CollapseMesh::kSeamShift;
+  return owner;
 }
 
 }  // namespace vkmesh::detail
