@@ -294,4 +294,55 @@ TEST_CASE("decimation: what is nearly the cheapest does as well as the cheapest"
     }
 }
 
+TEST_CASE("what edges cost whose end moves, and which cost less than before, by double precision",
+          "[decimate]") {
+  std::mt19937 random(11);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
+  // Places that float holds exactly.
+  const auto place = [&] {
+    return DVec3(
+        Vec3(static_cast<float>(uniform()), static_cast<float>(uniform()), static_cast<float>(uniform())));
+  };
+  const auto planes_at = [&](const DVec3& at, int count, double weight) {
+    std::vector<Plane> planes;
+    for (int k = 0; k < count; ++k) {
+      const DVec3 n = place() + DVec3(1e-3);
+      planes.push_back({n / std::sqrt(dot(n, n)), at + 0.6 * place(), weight});
+    }
+    return planes;
+  };
+  constexpr double kRounding = 100 * 40.0 / (1 << 24);
+  std::size_t less = 0, not_less = 0;
+  for (const std::size_t count : {1u, 5u, 16u, 17u, 100u, 128u}) {
+    const DVec3 at_p = place(), at_q = place();
+    const double weight = count % 2 == 0 ? 0.05 : 0.5;  // the lighter, the more edges cost less
+    const std::vector<Plane> of_p = planes_at(at_p, 3, weight), of_q = planes_at(at_q, 4, weight);
+    const CollapseVertex p = vertex_at(at_p, of_p), q = vertex_at(at_q, of_q);
+    std::vector<DVec3> at_r(count);
+    std::vector<std::vector<Plane>> of_r(count);
+    std::vector<CollapseVertex> r(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      at_r[i] = place();
+      of_r[i] = planes_at(at_r[i], 2, 0.6);
+      r[i] = vertex_at(at_r[i], of_r[i]);
+      if (i % 5 == 4) r[i].source |= CollapseVertex::kLocked;
+    }
+    const double collapse = sum(of_p, at_q) + sum(of_q, at_q);
+    EdgeBatch batch;
+    batch.gather_q(count, [&](std::size_t i) { return &r[i]; });
+    detail::find_moved_costs(batch, p, q, static_cast<float>(collapse), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double before =
+          std::min(sum(of_p, at_p) + sum(of_r[i], at_p), sum(of_p, at_r[i]) + sum(of_r[i], at_r[i]));
+      const double now = collapse + sum(of_r[i], at_q);
+      CHECK(std::fabs(now - static_cast<double>(batch.cost[i])) < kRounding);
+      if (std::fabs(now - before) < kRounding) continue;
+      CHECK(batch.end[i] == (now < before && i % 5 != 4 ? 1 : 0));
+      ++(now < before ? less : not_less);
+    }
+  }
+  CHECK(less > 10);
+  CHECK(not_less > 10);
+}
+
 }  // namespace vkmesh
