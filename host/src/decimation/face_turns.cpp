@@ -122,9 +122,10 @@ struct SpokeBounds {
               vv = vx * vx + vy * vy + vz * vz, uw = ux * wx + uy * wy + uz * wz,
               vw = vx * wx + vy * wy + vz * wz;
   const float over = 1.0f / (uu * vv - uv * uv);
-  float s = (vv * uw - uv * vw) * over, t = (uu * vw - uv * uw) * over;
+  float s = (vv * uw - uv * vw) * over, t;
   s = s > 0 ? s : 0.0f;
   s = s < 1 ? s : 1.0f;
+  t = (vw - s * uv) / vv;
   t = t > 0 ? t : 0.0f;
   t = t < 1 - s ? t : 1 - s;
   const float rx = wx - s * ux - t * vx, ry = wy - s * uy - t * vy, rz = wz - s * uz - t * vz;
@@ -286,17 +287,18 @@ float FaceTurns::squared_distance(const Vector& p, const Vector& q, const Vector
     far = near > far ? near : far;
   };
   const auto to_old = [&](const Vector& point, float near, std::size_t first) {
+    // The faces of the edge lie in the midst.
+    for (const std::size_t side : {std::size_t{0}, at_p_}) {
+      if (!(near > far)) break;
+      const float d = squared_distance_to(point, at_p, at_q, corner(side, p, x));
+      near = d < near ? d : near;
+    }
     std::size_t face = first;
     for (std::size_t i = 0; i < faces_ && near > far; ++i) {
       const float d =
           squared_distance_to(point, face < at_p_ ? at_p : at_q, corner(face, p, x), corner(face + 1, p, x));
       near = d < near ? d : near;
       face = face + 1 < faces_ ? face + 1 : 0;
-    }
-    for (const std::size_t side : {std::size_t{0}, at_p_}) {
-      if (!(near > far)) break;
-      const float d = squared_distance_to(point, at_p, at_q, corner(side, p, x));
-      near = d < near ? d : near;
     }
     far = near > far ? near : far;
   };
