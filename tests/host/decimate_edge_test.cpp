@@ -25,8 +25,9 @@
 #include <vkmesh/triangulate.h>
 
 #include "decimate_support.h"
+#include "decimation/collapse_distance.h"
 #include "decimation/collapse_order.h"
-#include "decimation/face_turns.h"
+#include "decimation/edge_rim.h"
 #include "support/data.h"
 #include "support/shapes.h"
 #include "triangle_distance.h"
@@ -522,13 +523,13 @@ TEST_CASE("the distance between the faces before and after a collapse", "[decima
     for (std::size_t k = 0; k <= split; ++k) at_p.push_back(static_cast<std::uint32_t>(k));
     for (std::size_t k = split; k < corners; ++k) at_q.push_back(static_cast<std::uint32_t>(k));
     at_q.push_back(0);
-    detail::FaceTurns turns;
+    detail::EdgeRim rim;
     const auto padded = [](std::vector<std::uint32_t>& some) {
       const std::size_t size = some.size();
-      some.resize(size + detail::FaceTurns::kBlock);
+      some.resize(size + detail::EdgeRim::kBlock);
       return std::span<const std::uint32_t>(some).first(size);
     };
-    turns.set(vertices, padded(at_p), padded(at_q));
+    rim.set(vertices, padded(at_p), padded(at_q));
     const auto floats = [](const DVec3& v) {
       return std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };
@@ -556,8 +557,8 @@ TEST_CASE("the distance between the faces before and after a collapse", "[decima
       const double expected = ends > least ? ends : std::max(all, least);
       (ends > least ? by_ends : all > least ? by_spokes : near) += 1;
       CAPTURE(round, corners, split, least);
-      CHECK(static_cast<double>(
-                turns.squared_distance(floats(p), floats(q), floats(x - p), static_cast<float>(least))) ==
+      CHECK(static_cast<double>(detail::squared_distance_of_collapse(rim, floats(p), floats(q), floats(x - p),
+                                                                     static_cast<float>(least))) ==
             Approx(expected).epsilon(1e-3).margin(1e-6));
     }
   }

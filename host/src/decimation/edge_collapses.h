@@ -6,64 +6,31 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <glm/geometric.hpp>
-
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/handles.h>
 
 #include "decimation/attribute_quadrics.h"
+#include "decimation/collapse_distance.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_queues.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
+#include "decimation/edge_rim.h"
 #include "decimation/face_turns.h"
 #include "decimation/four_rows.h"
+#include "decimation/pending_edges.h"
+#include "decimation/placements.h"
 #include "decimation/star.h"
 #include "decimation/territories.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
-
-// Edge collapses by quadric error: where the point goes, and what is known of the cost.
-
-/// Which edges may cost less after a collapse: none, those that the vertex had which went, those of the kept
-/// vertex, or those of its neighbours, too.
-enum class MayFall { kNone, kOfGone, kAll, kAround };
-
-struct OptimalPlacement {
-  static constexpr MayFall kMayFall = MayFall::kNone;
-  static constexpr bool kByCriteria = false;
-  static constexpr bool kAtEnds = false;
-  static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
-};
-struct MidpointPlacement {
-  static constexpr MayFall kMayFall = MayFall::kAll;
-  static constexpr bool kByCriteria = false;
-  static constexpr bool kAtEnds = false;
-  static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
-};
-/// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those
-/// that q had before only cost more.
-struct EndPlacement {
-  static constexpr MayFall kMayFall = MayFall::kOfGone;
-  static constexpr bool kByCriteria = false;
-  static constexpr bool kAtEnds = true;
-  static void place(EdgeBatch& batch, std::size_t count) { place_at_end(batch, count); }
-};
-
-/// With weights of Criteria, which look at all faces at both ends.
-template <class Placement>
-struct ByCriteria : Placement {
-  static constexpr MayFall kMayFall = MayFall::kAround;
-  static constexpr bool kByCriteria = true;
-};
 
 /// Edge collapses, the cheapest first.
 ///
@@ -185,11 +152,11 @@ class EdgeCollapses {
       evaluate(*next);
       if (now->count == 0 && next->count == 0 && later->count == 0) {
         take(*now);
-        fetch_faces(*now, kAll);
-        fetch_ends(*now, kAll);
+        now->fetch_faces(mesh_, Pending::kAll);
+        now->fetch_ends(mesh_, Pending::kAll);
         evaluate(*now);
       }
-      walk(*now, kAll);
+      now->walk(mesh_, Pending::kAll);
     }
     const bool any = now->count + next->count + later->count + last->count > 0;
     serve(*now, *next, *later, *last);
@@ -264,7 +231,7 @@ class EdgeCollapses {
     if constexpr (Placement::kByCriteria) {
       for (std::size_t i = 0; i < edges.size(); ++i) {
         const CollapseVertex &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
-        take_star(star, edges[i],
+        take_star(star, mesh_, edges[i],
                   place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
         ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, star);
       }
@@ -280,100 +247,12 @@ class EdgeCollapses {
     return {p.position[0] + x[0], p.position[1] + x[1], p.position[2] + x[2]};
   }
 
-  /// The faces at both ends of an edge that a collapse to this place changes.
-  void take_star(Star& star, std::uint32_t h, const std::array<float, 3>& place) const {
-    star.clear();
-    const std::uint32_t t = mesh_.twin(h);
-    const DVec3 there = point_of(place), at_p = point_of(vertices_[mesh_.origin(h)].position),
-                at_q = point_of(vertices_[mesh_.origin(t)].position);
-    star.length2 = glm::dot(at_q - at_p, at_q - at_p);
-    star.inner_after.push_back(there);
-    if (there != at_p) star.inner_before.push_back(at_p);
-    if (there != at_q) star.inner_before.push_back(at_q);
-    for (const std::uint32_t side : {h, t})
-      if (!mesh_.is_ghost(side)) star.before.push_back(face_of(mesh_, side >> 2));
-    const auto add_others_at = [&](std::uint32_t start) {
-      for (std::uint32_t out = mesh_.around_vertex(start); out != start; out = mesh_.around_vertex(out)) {
-        if (mesh_.is_ghost(out) || (out >> 2) == (h >> 2) || (out >> 2) == (t >> 2)) continue;
-        star.before.push_back(face_of(mesh_, out >> 2));
-        star.after.push_back(star.before.back());
-        star.after.back().corner[out & 3u] = there;
-      }
-    };
-    if (there != at_p) add_others_at(h);
-    if (there != at_q) add_others_at(t);
-    // Where nothing moves, or an ear of the boundary goes, the faces beside it are in its place.
-    if (star.after.empty())
-      for (const std::uint32_t start : {h, t}) add_others_at(start);
-  }
-
-  struct Due {
-    std::uint32_t half_edge;
-    float cost;
-    std::int32_t end;
-    std::array<float, 3> x;
-  };
-
-  static constexpr std::uint32_t kWalked = 16, kTooLong = ~0u;
-  struct Walked {
-    std::array<std::uint32_t, kWalked> vertex;  // the first `size` are meant
-    std::uint32_t size;                         // kTooLong when there are more
-  };
-  /// A walk around an end of an edge: at which half-edge it is, where it ends, and the ring that it makes.
-  struct Walk {
-    std::uint32_t at, start;
-    Walked* ring;
-  };
-
-  /// Edges on their way from the queue to their collapse. What a batch waits for from memory comes while the
-  /// batches before it are worked on: four are on their way, one behind the other. What those before it have
-  /// changed meanwhile is known by its marks: such an edge goes back, such a ring is walked again.
-  struct Pending {
-    std::array<std::uint32_t, Queue::kBatch> ids;  // `count` were taken
-    std::size_t count = 0, faces_fetched = 0, ends_fetched = 0;
-    std::array<Due, Queue::kBatch> due;
-    std::size_t due_count = 0;
-    std::array<Walked, 2 * Queue::kBatch> walked;  // those of p and q of each due edge
-    std::array<Walk, 2 * Queue::kBatch> walk;      // `walks` under way
-    std::size_t walks = 0, walker = 0, go_on = 0;
-    std::uint32_t steps = 0;
-    std::size_t tried = 0;
-    bool evaluated = false;
-
-    void reset() {
-      count = faces_fetched = ends_fetched = due_count = walks = tried = 0;
-      evaluated = false;
-    }
-  };
-  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  using Pending = PendingEdges<Queue::kBatch>;
+  using Due = DueEdge;
   /// So few faces need no looking ahead, which makes the order a little less strict.
   static constexpr std::size_t kInCache = 1 << 14;
 
   void take(Pending& b) { b.count = share_->queue.take(b.ids, share_->last); }
-
-  /// The faces of `some` more of those taken.
-  void fetch_faces(Pending& b, std::size_t some) {
-    const std::size_t end = some < b.count - b.faces_fetched ? b.faces_fetched + some : b.count;
-    const CollapseMesh::Face* const faces = mesh_.faces();
-    for (std::size_t i = b.faces_fetched; i < end; ++i) prefetch(&faces[b.ids[i] >> 2]);
-    b.faces_fetched = end;
-  }
-
-  /// The ends of `some` more of those taken.
-  void fetch_ends(Pending& b, std::size_t some) {
-    const std::size_t end = some < b.count - b.ends_fetched ? b.ends_fetched + some : b.count;
-    const CollapseMesh::Face* const faces = mesh_.faces();
-    const CollapseVertex* const vertices = vertices_.data();
-    for (std::size_t i = b.ends_fetched; i < end; ++i) {
-      const std::uint32_t h = b.ids[i], corner = h & 3u;
-      const CollapseMesh::Face& face = faces[h >> 2];
-      // All bits where it is: nothing foretells it, so there is no jump.
-      const std::uint32_t queued = 0 - (face.tags >> corner & 1u);
-      prefetch(&vertices[face.origin[corner] & queued]);
-      prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & queued]);
-    }
-    b.ends_fetched = end;
-  }
 
   /// Tells those that are due from those that go back at what they cost now.
   void evaluate(Pending& b) {
@@ -406,49 +285,7 @@ class EdgeCollapses {
     }
     for (std::size_t i = 0; i < b.due_count; ++i) b.due[i] = due_of(due[i], ids[due[i]]);
     for (const std::uint8_t i : std::span(others).first(other_count)) share_->queue.insert(ids[i], ranks[i]);
-    b.walks = 2 * b.due_count;
-    b.walker = b.go_on = b.steps = 0;
-    for (std::uint32_t i = 0; i < b.due_count; ++i) {
-      const std::uint32_t h = b.due[i].half_edge, t = mesh_.twin(h);
-      prefetch(&mesh_.face(t));
-      b.walk[2 * i] = {h, h, &b.walked[2 * i]};
-      b.walk[2 * i + 1] = {t, t, &b.walked[2 * i + 1]};
-    }
-  }
-
-  /// Walks around the ends of all due edges, one step of each in turn: one waits for all. `some` more steps.
-  void walk(Pending& b, std::size_t some) {
-    const CollapseMesh::Face* const faces = mesh_.faces();
-    const CollapseVertex* const vertices = vertices_.data();
-    while (some > 0 && b.walks > 0) {
-      const std::size_t end = some < b.walks - b.walker ? b.walker + some : b.walks;
-      some -= end - b.walker;
-      const Walk* walk = &b.walk[b.walker];
-      const Walk* const last = walk + (end - b.walker);
-      Walk* left = &b.walk[b.go_on];
-      const std::uint32_t steps = b.steps;
-      for (; walk != last; ++walk) {
-        const auto [at, start, ring] = *walk;
-        const std::uint32_t corner = CollapseMesh::kPreviousCorner[at & 3u];
-        const CollapseMesh::Face& face = faces[at >> 2];
-        const std::uint32_t out = face.twin[corner], v = face.origin[corner];
-        prefetch(&vertices[v]);
-        prefetch(&faces[out >> 2]);
-        ring->vertex[steps] = v;
-        // What an earlier batch takes away meanwhile leads to where it lay.
-        ring->size = v == kInvalid ? kTooLong : steps;
-        *left = {out, start, ring};
-        left += static_cast<std::size_t>(out != start) & static_cast<std::size_t>(v != kInvalid);
-      }
-      b.go_on = static_cast<std::size_t>(left - b.walk.data());
-      b.walker = end;
-      if (end < b.walks) return;
-      b.walks = b.go_on;
-      b.walker = b.go_on = 0;
-      if (++b.steps < kWalked) continue;
-      for (std::size_t i = 0; i < b.walks; ++i) b.walk[i].ring->size = kTooLong;
-      b.walks = 0;
-    }
+    b.start_walks(mesh_);
   }
 
   [[nodiscard]] bool is_mine(std::uint32_t h) const {
@@ -490,15 +327,15 @@ class EdgeCollapses {
     for (; now.tried < now.due_count && !share_->state.reached(); ++now.tried) {
       attempt(now, now.tried);
       if (now.tried % 2 == 0) continue;
-      walk(next, kWalkSteps);
-      fetch_ends(later, kFetches);
-      fetch_faces(last, kFetches);
+      next.walk(mesh_, kWalkSteps);
+      later.fetch_ends(mesh_, kFetches);
+      last.fetch_faces(mesh_, kFetches);
     }
     for (const std::uint32_t h : std::span(again_).first(again_count_)) enqueue_now(h);
     again_count_ = 0;
-    walk(next, kAll);
-    fetch_ends(later, kAll);
-    fetch_faces(last, kAll);
+    next.walk(mesh_, Pending::kAll);
+    later.fetch_ends(mesh_, Pending::kAll);
+    last.fetch_faces(mesh_, Pending::kAll);
     // What the last batch touched is known now to the rings of this one.
     for (const std::uint32_t v : before_) vertices_[v].source &= ~CollapseVertex::kTouched;
     before_.clear();
@@ -511,8 +348,8 @@ class EdgeCollapses {
     return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
   }
 
-  /// The neighbours of a vertex but one, counter-clockwise. What follows up to a multiple of kWalked is
-  /// there, too.
+  /// The neighbours of a vertex but one, counter-clockwise. What follows up to a multiple of
+  /// WalkedRing::kMost is there, too.
   using Ring = std::span<const std::uint32_t>;
   struct Rings {
     Ring p, q;
@@ -524,7 +361,7 @@ class EdgeCollapses {
     for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out))
       ring.push_back(mesh_.target(out));
     const std::size_t size = ring.size();
-    ring.resize((size + kWalked - 1) / kWalked * kWalked);
+    ring.resize((size + WalkedRing::kMost - 1) / WalkedRing::kMost * WalkedRing::kMost);
     return Ring(ring).first(size);
   }
 
@@ -556,7 +393,7 @@ class EdgeCollapses {
   [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
     const float allowed = std::max(due.cost, share_->queue.level()) / share_->cost_of_distance;
     const float distance2 =
-        turns_.squared_distance(vertices_[p].position, vertices_[q].position, due.x, allowed);
+        squared_distance_of_collapse(rim_, vertices_[p].position, vertices_[q].position, due.x, allowed);
     if (!(distance2 > allowed)) return false;
     const float cost = distance2 * share_->cost_of_distance;
     if (share_->queue.is_due(due.half_edge, cost)) return false;
@@ -568,7 +405,7 @@ class EdgeCollapses {
     evaluate(std::span(&h, 1));
     Pending& alone = *pending_[0];
     alone.due[0] = due_of(0, h);
-    alone.walked[0].size = kTooLong;
+    alone.walked[0].size = WalkedRing::kTooLong;
     Rings rings;
     return judge(alone, 0, mesh_.origin(h), mesh_.target(h), rings);
   }
@@ -583,8 +420,8 @@ class EdgeCollapses {
     if (exceeds_error(p, q, geometric_cost(p, q, due))) return Legality::kError;
     rings = rings_of(b, i);
     if (!link_condition(rings)) return Legality::kLink;
-    if (turns_.folds_over(vertices_[p].position, vertices_[q].position, due.x,
-                          share_->state.limits.cos_deviation))
+    if (folds_over(rim_, vertices_[p].position, vertices_[q].position, due.x,
+                   share_->state.limits.cos_deviation))
       return Legality::kFoldOver;
     return share_->state.criteria == nullptr || !share_->state.criteria->bounds() ||
                    meets_criteria(due, p, q, rings)
@@ -593,7 +430,7 @@ class EdgeCollapses {
   }
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q, const Rings& rings) {
-    take_star(star_, due.half_edge, place_of(vertices_[p], vertices_[q], due.end, due.x));
+    take_star(star_, mesh_, due.half_edge, place_of(vertices_[p], vertices_[q], due.end, due.x));
     const std::size_t at_p = rings.p.size() + 1, at_q = rings.q.size() + 1;
     star_.edges_before =
         std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
@@ -612,17 +449,17 @@ class EdgeCollapses {
   }
 
   /// The rings that were walked, unless a collapse of this batch was near; their vertices are the corners of
-  /// `turns_`, and their flags `ring_flags_`.
+  /// `rim_`, and their flags `ring_flags_`.
   Rings rings_of(const Pending& b, std::size_t i) {
-    const Walked &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
-    if (at_p.size != kTooLong && at_q.size != kTooLong) {
+    const WalkedRing &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
+    if (at_p.is_whole() && at_q.is_whole()) {
       const Rings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size)};
-      ring_flags_ = turns_.set(vertices_, rings.p, rings.q);
+      ring_flags_ = rim_.set(vertices_, rings.p, rings.q);
       if ((ring_flags_ & CollapseVertex::kTouched) == 0) return rings;
     }
     const std::uint32_t h = b.due[i].half_edge;
     const Rings rings{collect_ring(h, ring_p_), collect_ring(mesh_.twin(h), ring_q_)};
-    ring_flags_ = turns_.set(vertices_, rings.p, rings.q);
+    ring_flags_ = rim_.set(vertices_, rings.p, rings.q);
     return rings;
   }
 
@@ -880,7 +717,7 @@ class EdgeCollapses {
   std::size_t again_count_ = 0;
   std::vector<std::uint32_t> before_, touched_, sorted_, ring_p_, ring_q_;
   std::vector<Moved> moved_;
-  FaceTurns turns_;
+  EdgeRim rim_;
   std::uint32_t ring_flags_ = 0;
 };
 

@@ -27,7 +27,7 @@ constexpr std::size_t kTriples = HoleAttributes::kTriples;
 using Lanes = HoleBatch::Lanes;
 using Flags = std::array<std::int32_t, kLanes>;
 
-/// A triangle of less area than this share of its squared sides has no reliable normal; as in FaceTurns.
+/// A triangle of less area than this share of its squared sides has no reliable normal; as in folds_over.
 constexpr float kDegenerate = 1e-6f;
 /// What a new edge counts, for each unit of v's area and of its squared length: it decides where the ground
 /// is as good as flat.

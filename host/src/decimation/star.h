@@ -47,4 +47,7 @@ inline Star::Face face_of(const CollapseMesh& mesh, std::uint32_t record) {
   return result;
 }
 
+/// Of the ends of the edge of h, which move to this place.
+void take_star(Star& star, const CollapseMesh& mesh, std::uint32_t h, const std::array<float, 3>& place);
+
 }  // namespace vkmesh::detail
