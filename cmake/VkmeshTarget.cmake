@@ -30,3 +30,18 @@ function(vkmesh_target target)
     target_link_options(${target} PUBLIC -fsanitize=${VKMESH_SANITIZE})
   endif()
 endfunction()
+
+# vkmesh_precompile(TARGET HEADER...): compiles once the headers of others that most C++ files of a library include, and HEADER...
+# Not under the sanitizers: there each file shows that it includes what it needs.
+function(vkmesh_precompile target)
+  if(VKMESH_SANITIZE)
+    return()
+  endif()
+  set(headers algorithm array cmath cstdint cstring filesystem functional limits map memory optional span string string_view
+    utility variant vector glm/geometric.hpp glm/vec2.hpp glm/vec3.hpp glm/vec4.hpp tl/expected.hpp ${ARGN})
+  list(TRANSFORM headers REPLACE "(.+)" "$<$<COMPILE_LANGUAGE:CXX>:<\\1$<ANGLE-R>>")
+  target_precompile_headers(${target} PRIVATE ${headers})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-stringop-overread) # as above, and of strings in precompiled headers alone
+  endif()
+endfunction()

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <random>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -52,39 +51,37 @@ class Replay {
     for (const Vec3& p : mesh.points) points_.emplace_back(p);
     for (std::size_t f = 0; f < mesh.face_count(); ++f)
       faces_[static_cast<std::uint32_t>(f)] = {mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]};
+    judge();
   }
 
   void step(const Collapse<Vec3>& c) {
-    const int before = characteristic();
+    // The others stay as they are.
     std::map<std::uint32_t, DVec3> normals;
-    for (const auto& [f, face] : faces_) normals[f] = normal(face);
+    for (const auto& [f, face] : faces_)
+      for (const std::uint32_t v : face)
+        if (v == c.kept || v == c.removed) normals[f] = normal(face);
     points_[c.kept] = DVec3(c.position);
     std::size_t gone = 0;
-    for (auto it = faces_.begin(); it != faces_.end();) {
-      auto& face = it->second;
-      std::replace(face.begin(), face.end(), c.removed, c.kept);
-      if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
-        CHECK((it->first == c.faces[0] || it->first == c.faces[1]));
-        ++gone;
-        it = faces_.erase(it);
-      } else {
-        ++it;
-      }
-    }
-    CHECK(gone == (c.faces[0] != kInvalid ? 1u : 0u) + (c.faces[1] != kInvalid ? 1u : 0u));
-    CHECK(gone > 0);
-    CHECK(characteristic() == before);
     // Rounding of the library's positions, which are relative to the box.
     constexpr double kRounding = 1e-4;
-    for (const auto& [f, face] : faces_) {
-      const DVec3 now = normal(face), was = normals[f];
+    for (const auto& [f, was] : normals) {
+      auto& face = faces_.at(f);
+      std::replace(face.begin(), face.end(), c.removed, c.kept);
+      if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
+        CHECK((f == c.faces[0] || f == c.faces[1]));
+        ++gone;
+        faces_.erase(f);
+        continue;
+      }
+      const DVec3 now = normal(face);
       const double lengths = std::sqrt(dot(now, now) * dot(was, was));
       CHECK(dot(now, was) >= (cos_deviation_ - kRounding) * lengths);
     }
-    // Simple and oriented: each directed edge at most once.
-    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-    for (const auto& [f, face] : faces_)
-      for (std::size_t i = 0; i < 3; ++i) REQUIRE(edges.insert({face[i], face[(i + 1) % 3]}).second);
+    CHECK(gone == (c.faces[0] != kInvalid ? 1u : 0u) + (c.faces[1] != kInvalid ? 1u : 0u));
+    CHECK(gone > 0);
+    const int before = characteristic_;
+    judge();
+    CHECK(characteristic_ == before);
   }
 
   [[nodiscard]] const std::map<std::uint32_t, std::array<std::uint32_t, 3>>& faces() const { return faces_; }
@@ -94,18 +91,29 @@ class Replay {
   [[nodiscard]] DVec3 normal(const std::array<std::uint32_t, 3>& f) const {
     return cross(points_[f[1]] - points_[f[0]], points_[f[2]] - points_[f[0]]);
   }
-  [[nodiscard]] int characteristic() const {
-    std::set<std::uint32_t> used;
-    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  /// Simple and oriented, each directed edge at most once; and what Euler counts.
+  void judge() {
+    std::vector<bool> used(points_.size(), false);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const auto& [f, face] : faces_)
       for (std::size_t i = 0; i < 3; ++i) {
-        used.insert(face[i]);
-        edges.insert(std::minmax(face[i], face[(i + 1) % 3]));
+        used[face[i]] = true;
+        edges.emplace_back(face[i], face[(i + 1) % 3]);
       }
-    return static_cast<int>(used.size()) - static_cast<int>(edges.size()) + static_cast<int>(faces_.size());
+    std::sort(edges.begin(), edges.end());
+    REQUIRE(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
+    // An edge of two faces counts at the one from its lesser end.
+    const auto counts = [&](const auto& edge) {
+      return edge.first < edge.second ||
+             !std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
+    };
+    characteristic_ = static_cast<int>(std::count(used.begin(), used.end(), true)) -
+                      static_cast<int>(std::count_if(edges.begin(), edges.end(), counts)) +
+                      static_cast<int>(faces_.size());
   }
 
   double cos_deviation_;
+  int characteristic_ = 0;
   std::vector<DVec3> points_;
   std::map<std::uint32_t, std::array<std::uint32_t, 3>> faces_;
 };
