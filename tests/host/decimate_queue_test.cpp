@@ -153,6 +153,30 @@ TEST_CASE("a monotone queue serves up to a bucket, and takes over another's ids 
   }
 }
 
+TEST_CASE("a monotone queue hands out its ids, each where it was, and drops what nobody takes", "[heap]") {
+  MonotoneQueue queue, even, third;
+  for (std::uint32_t id = 0; id < 600; ++id) queue.insert(id, std::ldexp(1.0f, static_cast<int>(id % 7)));
+  third.insert(1000, 8.0f);
+  std::array<std::uint32_t, 1> one{};
+  REQUIRE(third.take(one) == 1);  // which serves 8 now
+  queue.hand_out([&](std::uint32_t id) { return id % 2 == 0 ? &even : id % 3 == 0 ? &third : nullptr; });
+  CHECK(queue.empty());
+  CHECK(even.size() == 300);
+  CHECK(third.size() == 100);
+  std::array<std::uint32_t, 64> out{};
+  while (const std::size_t count = even.take(out))
+    for (std::size_t i = 0; i < count; ++i) {
+      CHECK(out[i] % 2 == 0);
+      CHECK(even.floor() == MonotoneQueue::bucket(std::ldexp(1.0f, static_cast<int>(out[i] % 7))));
+    }
+  while (const std::size_t count = third.take(out))
+    for (std::size_t i = 0; i < count; ++i) {
+      CHECK(out[i] % 6 == 3);
+      CHECK(third.floor() ==
+            MonotoneQueue::bucket(std::ldexp(1.0f, std::max(3, static_cast<int>(out[i] % 7)))));
+    }
+}
+
 TEST_CASE("what costs too little for a monotone queue comes next, the last of a bucket first", "[heap]") {
   MonotoneQueue queue;
   std::array<std::uint32_t, 1> out{};

@@ -264,6 +264,25 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
     }
     CHECK(collapses > 50);
     check(mesh, labels);
+
+    // Parts become one again two by two, and what lay between them is no seam any more.
+    for (std::size_t left = parts; left > 1; left /= 2) {
+      const std::vector<std::uint8_t> before = labels;
+      std::vector<std::uint32_t> faces;
+      for (std::uint32_t f = 0; f < mesh.half_edge_bound() / 4; ++f)
+        if (mesh.alive(4 * f)) faces.push_back(f);
+      detail::join_halves(mesh, labels, faces);
+      check(mesh, labels);
+      for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+        if (!mesh.vertices[v].alive()) continue;
+        REQUIRE((labels[v] & ~kInner) == (before[v] & ~kInner) / 2);
+        const auto ring = ring_of(mesh, v);
+        const bool foreign = std::ranges::any_of(ring, [&](std::uint32_t r) {
+          return r != mesh.apex() && (labels[r] & ~kInner) != (labels[v] & ~kInner);
+        });
+        REQUIRE(foreign == ((labels[v] & kInner) == 0));
+      }
+    }
   }
 }
 

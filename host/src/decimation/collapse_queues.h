@@ -38,6 +38,14 @@ class LazyQueue {
   void reserve(std::size_t more) { queue_.reserve(more); }
   /// All that another holds.
   void absorb(LazyQueue& other) { queue_.absorb(other.queue_); }
+  /// Of what it holds, each to the queue that to(id) points to, if to any.
+  template <class To>
+  void hand_out(To&& to) {
+    queue_.hand_out([&](std::uint32_t id) {
+      LazyQueue* const queue = to(id);
+      return queue == nullptr ? nullptr : &queue->queue_;
+    });
+  }
 
  private:
   MonotoneQueue queue_;

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -59,7 +61,8 @@ class PartedCollapses {
 
   bool step() {
     if constexpr (!Queue::kExact) {
-      if (!parts_.empty() && is_late()) unite();
+      while (parts_.size() > 2 && is_small()) join_halves_of_parts();
+      if (!parts_.empty() && (is_small() || is_late())) unite();
       if (!parts_.empty()) return round();
     }
     Worker& worker = mine();
@@ -153,11 +156,34 @@ class PartedCollapses {
     return 4 * (state_.faces - state_.limits.faces) < state_.mesh.face_count() - state_.limits.faces ||
            4 * (state_.vertices - state_.limits.vertices) < state_.mesh.apex() - state_.limits.vertices;
   }
+  /// Parts must have some faces,
+  [[nodiscard]] bool is_small() const { return state_.faces < state_.part_faces / 16 * parts_.size(); }
+  /// and some to remove in a round.
   [[nodiscard]] bool is_late() const {
-    // Parts must have some faces, and some to remove in a round.
     const std::size_t few = std::max(state_.part_faces / 16, 4 * parts_.size());
-    return state_.faces < state_.part_faces / 16 * parts_.size() ||
-           state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;
+    return state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;
+  }
+  /// Half as many parts, with less seam between them.
+  void join_halves_of_parts() {
+    CollapseMesh& mesh = state_.mesh;
+    if (faces_left_.empty()) {
+      faces_left_.resize(mesh.half_edge_bound() / 4);
+      std::iota(faces_left_.begin(), faces_left_.end(), 0u);
+    }
+    std::erase_if(faces_left_, [&](std::uint32_t f) { return !mesh.alive(4 * f); });
+    join_halves(mesh, labels_, faces_left_);
+    const auto halves = std::exchange(parts_, {});
+    for (std::size_t i = 0; i < halves.size() / 2; ++i)
+      parts_.push_back(std::make_unique<Part>(state_, halves[2 * i]->share.queue.size(),
+                                              Territory(labels_, static_cast<std::uint8_t>(i))));
+    Queue seam = std::exchange(rest_->queue, Queue(mesh.half_edge_bound(), rest_->queue.size()));
+    const auto home = [&](std::uint32_t h) -> Queue* {
+      if (!mesh.queued(h)) return nullptr;
+      return mesh.at_seam(h) ? &rest_->queue
+                             : &parts_[labels_[mesh.origin(h)] & ~Territory::kInner]->share.queue;
+    };
+    for (const auto& half : halves) half->share.queue.hand_out(home);
+    seam.hand_out(home);
   }
   void unite() {
     std::size_t edges = 0;
@@ -174,6 +200,7 @@ class PartedCollapses {
   DecimationState& state_;
   std::vector<std::uint8_t> labels_;
   std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::uint32_t> faces_left_;  // when parts were joined the last time; empty before
   std::unique_ptr<Share> rest_;
   tbb::enumerable_thread_specific<Worker> workers_{[this] { return Worker(state_.mesh); }};
 };

@@ -102,4 +102,17 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
   return labels;
 }
 
+void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces) {
+  for (std::uint8_t& label : labels)
+    label = static_cast<std::uint8_t>((label & ~Territory::kInner) >> 1) | Territory::kInner;
+  const auto owner = [&](std::uint32_t v) { return labels[v] & ~Territory::kInner; };
+  for (const std::uint32_t f : faces) {
+    if (mesh.is_ghost(4 * f)) continue;
+    const auto& [a, b, c] = mesh.face(4 * f).origin;
+    if (((owner(a) ^ owner(b)) | (owner(b) ^ owner(c))) == 0) continue;
+    for (const std::uint32_t v : {a, b, c}) labels[v] &= static_cast<std::uint8_t>(~Territory::kInner);
+  }
+  for (const std::uint32_t f : faces) mark_seam(labels, mesh.face(4 * f));
+}
+
 }  // namespace vkmesh::detail

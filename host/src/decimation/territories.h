@@ -51,6 +51,10 @@ class Territory {
 /// O(n log parts).
 [[nodiscard]] std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts);
 
+/// What divide has made of parts: 2 i and 2 i + 1 become part i again. `faces`: all that are left, ghosts
+/// too, which are marked anew. O(vertices + faces), of which the vertices take a byte each.
+void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces);
+
 /// Tells a face which of its edges are at the seam, and returns for each who sees to it: a part, or
 /// Territory::kSeam. No part may be at work before all faces know.
 inline std::array<std::uint8_t, 3> mark_seam(std::span<const std::uint8_t> labels, CollapseMesh::Face& face) {
@@ -63,7 +67,7 @@ inline std::array<std::uint8_t, 3> mark_seam(std::span<const std::uint8_t> label
     seam |= (inner ? 0u : 1u) << i;
     owner[i] = inner ? at[i] & ~Territory::kInner : Territory::kSeam;
   }
-  face.tags |= seam << CollapseMesh::kSeamShift;
+  face.tags = (face.tags & ~(7u << CollapseMesh::kSeamShift)) | seam << CollapseMesh::kSeamShift;
   return owner;
 }
 

@@ -84,9 +84,16 @@ class MonotoneQueue {
 
   /// Takes all that another queue holds, into the same buckets or that being served.
   void absorb(MonotoneQueue& other) {
+    other.hand_out([this](std::uint32_t) { return this; });
+  }
+  /// Gives all that it holds to the queues that to(id) points to, as absorb does; what has none is dropped.
+  template <class To>
+  void hand_out(To&& to) {
     std::array<std::uint32_t, kChunk> ids;
-    while (const std::size_t count = other.take(ids))
-      for (std::size_t i = 0; i < count; ++i) insert_in(std::max(other.floor_, floor_), ids[i]);
+    while (const std::size_t count = take(ids))
+      for (std::size_t i = 0; i < count; ++i)
+        if (MonotoneQueue* const queue = to(ids[i]); queue != nullptr)
+          queue->insert_in(std::max(floor_, queue->floor_), ids[i]);
   }
 
  private:
