@@ -1,14 +1,20 @@
 #include "bench/memory.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
+#endif
+#if defined(__linux__)
+#include <sys/mman.h>
 #endif
 
 namespace vkmesh::bench {
@@ -25,10 +31,9 @@ void count(std::ptrdiff_t bytes) {
   }
 }
 
-// What is kept right before each block. Blocks are aligned here: what aligned_alloc frees glibc does not use
-// again for the next of that kind, whose pages would be new ones each time.
+// What is kept right before each block.
 struct Kept {
-  void* start;
+  void* start;  // nullptr of a large block
   std::size_t size;
 };
 
@@ -36,11 +41,63 @@ Kept* kept_before(void* block) {
   return static_cast<Kept*>(block) - 1;
 }
 
+#if defined(__linux__)
+// Large blocks are kept by size, in large pages or small ones as their first user has asked: each contestant
+// finds its own again. From malloc they would get what another has left in small pages, or new ones, which
+// takes long.
+class LargeBlocks {
+ public:
+  static constexpr std::size_t kLeast = std::size_t{1} << 20, kPage = std::size_t{1} << 21;
+
+  void* take(std::size_t size) {
+    const std::size_t room = (size + kPage - 1) / kPage * kPage;
+    {
+      const std::lock_guard lock(mutex_);
+      for (std::size_t i = 0; i < count_; ++i)
+        if (room_of(free_[i]) == room) {
+          void* const block = free_[i];
+          free_[i] = free_[--count_];
+          return block;
+        }
+    }
+    void* const start =
+        mmap(nullptr, room + 2 * kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED) return nullptr;
+    const auto address = reinterpret_cast<std::uintptr_t>(start);
+    void* const block = reinterpret_cast<void*>((address / kPage + 1) * kPage);  // behind what is kept
+    *kept_before(block) = {nullptr, room};
+    return block;
+  }
+  void give_back(void* block) {
+    const std::lock_guard lock(mutex_);
+    if (count_ < free_.size()) free_[count_++] = block;
+  }
+
+ private:
+  static std::size_t room_of(void* block) { return (kept_before(block)->size + kPage - 1) / kPage * kPage; }
+
+  std::mutex mutex_;
+  std::array<void*, 1024> free_{};
+  std::size_t count_ = 0;
+};
+LargeBlocks large_blocks;
+#endif
+
 void* allocate(std::size_t size, std::size_t alignment) {
+  void* block = nullptr;
+#if defined(__linux__)
+  if (size >= LargeBlocks::kLeast && alignment <= LargeBlocks::kPage) {
+    block = large_blocks.take(size);
+    if (block == nullptr) throw std::bad_alloc();
+    kept_before(block)->size = size;
+    count(static_cast<std::ptrdiff_t>(size));
+    return block;
+  }
+#endif
   std::size_t room = size + sizeof(Kept) + alignment;
   void* const start = room < size ? nullptr : std::malloc(room);
   if (start == nullptr) throw std::bad_alloc();
-  void* block = static_cast<std::byte*>(start) + sizeof(Kept);
+  block = static_cast<std::byte*>(start) + sizeof(Kept);
   room -= sizeof(Kept);
   std::align(alignment, size, block, room);
   *kept_before(block) = {start, size};
@@ -51,6 +108,9 @@ void* allocate(std::size_t size, std::size_t alignment) {
 void release(void* block) {
   if (block == nullptr) return;
   count(-static_cast<std::ptrdiff_t>(kept_before(block)->size));
+#if defined(__linux__)
+  if (kept_before(block)->start == nullptr) return large_blocks.give_back(block);
+#endif
   std::free(kept_before(block)->start);
 }
 

@@ -86,36 +86,40 @@ struct SpokeBounds {
 }
 
 VKMESH_CLONES void bound_ends(const float* __restrict cx, const float* __restrict cy,
-                              const float* __restrict cz, const Lie& lie, EndBounds& out) {
-  float *const __restrict from_p = out.p.data(), *const __restrict from_q = out.q.data(),
-                          *const __restrict from_middle = out.middle.data();
+                              const float* __restrict cz, const Lie& lie, float* __restrict from_p,
+                              float* __restrict from_q, float* __restrict from_middle) {
   const float x0 = lie.place[0], x1 = lie.place[1], x2 = lie.place[2];
   const float p0 = lie.p[0], p1 = lie.p[1], p2 = lie.p[2], q0 = lie.q[0], q1 = lie.q[1], q2 = lie.q[2];
   const float m0 = lie.middle[0], m1 = lie.middle[1], m2 = lie.middle[2];
-  const std::int32_t faces = lie.faces;
-  for (std::int32_t first = 0; first < faces; first += kBlock)
-    for (std::int32_t k = first; k < first + kBlock; ++k) {
+  for (std::int32_t left = lie.faces; left > 0; left -= kBlock) {
+    for (std::int32_t k = 0; k < kBlock; ++k) {  // so many and no others, or g++ 12 does it one by one
       const float ax = cx[k] - x0, ay = cy[k] - x1, az = cz[k] - x2;
       const float bx = cx[k + 1] - x0, by = cy[k + 1] - x1, bz = cz[k + 1] - x2;
       from_p[k] = to_point_of(p0, p1, p2, 0, 0, 0, ax, ay, az, bx, by, bz);
       from_q[k] = to_point_of(q0, q1, q2, 0, 0, 0, ax, ay, az, bx, by, bz);
       from_middle[k] = to_point_of(m0, m1, m2, 0, 0, 0, ax, ay, az, bx, by, bz);
     }
+    cx += kBlock;
+    cy += kBlock;
+    cz += kBlock;
+    from_p += kBlock;
+    from_q += kBlock;
+    from_middle += kBlock;
+  }
 }
 
 VKMESH_CLONES void bound_spokes(const float* __restrict cx, const float* __restrict cy,
-                                const float* __restrict cz, const Lie& lie, SpokeBounds& out) {
-  float* const __restrict before = out.before.data(), * const __restrict after = out.after.data();
+                                const float* __restrict cz, const Lie& lie, float* __restrict before,
+                                float* __restrict after) {
   const float x0 = lie.place[0], x1 = lie.place[1], x2 = lie.place[2];
   const float p0 = lie.p[0], p1 = lie.p[1], p2 = lie.p[2], q0 = lie.q[0], q1 = lie.q[1], q2 = lie.q[2];
-  const std::int32_t at_p = lie.at_p, faces = lie.faces;
-  for (std::int32_t first = 0; first < faces; first += kBlock)
-    for (std::int32_t k = first; k < first + kBlock; ++k) {
+  for (std::int32_t left = lie.faces, at_p = lie.at_p; left > 0; left -= kBlock, at_p -= kBlock) {
+    for (std::int32_t k = 0; k < kBlock; ++k) {  // so many and no others, or g++ 12 does it one by one
       const float ax = cx[k] - x0, ay = cy[k] - x1, az = cz[k] - x2;
       const float bx = cx[k + 1] - x0, by = cy[k + 1] - x1, bz = cz[k + 1] - x2;
       const float ex = cx[k + 2] - x0, ey = cy[k + 2] - x1, ez = cz[k + 2] - x2;
       // The old point of this face, and that of the next.
-      const bool at_q = k >= at_p, next_at_q = (k + 1 >= at_p) & (k + 1 < faces);
+      const bool at_q = k >= at_p, next_at_q = (k + 1 >= at_p) & (k + 1 < left);
       const float ox = at_q ? q0 : p0, oy = at_q ? q1 : p1, oz = at_q ? q2 : p2;
       const float nx = next_at_q ? q0 : p0, ny = next_at_q ? q1 : p1, nz = next_at_q ? q2 : p2;
       const float most = 0.25f * (ox * ox + oy * oy + oz * oz);
@@ -129,6 +133,12 @@ VKMESH_CLONES void bound_spokes(const float* __restrict cx, const float* __restr
       before[k] = s2 < s ? s2 : s;
       after[k] = t2 < t ? t2 : t;
     }
+    cx += kBlock;
+    cy += kBlock;
+    cz += kBlock;
+    before += kBlock;
+    after += kBlock;
+  }
 }
 
 }  // namespace
@@ -183,13 +193,13 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
     return near;
   };
   EndBounds ends;
-  bound_ends(rim.x(), rim.y(), rim.z(), lie, ends);
+  bound_ends(rim.x(), rim.y(), rim.z(), lie, ends.p.data(), ends.q.data(), ends.middle.data());
   to_new(at_p, least_of(ends.p, from_p), 0);
   to_new(at_q, least_of(ends.q, from_q), faces_at_p);
   to_new(middle, least_of(ends.middle, dot(middle, middle)), 0);
   if (far > least) return far;  // far enough for now
   SpokeBounds spokes;
-  bound_spokes(rim.x(), rim.y(), rim.z(), lie, spokes);
+  bound_spokes(rim.x(), rim.y(), rim.z(), lie, spokes.before.data(), spokes.after.data());
   // Both have an edge to where their rings meet; of the one, it is the second at this corner.
   to_new(half(at_p, corner(0)), 0.25f * from_p, 0);
   to_new(half(at_q, corner(faces_at_p)), 0.25f * from_q, faces_at_p);

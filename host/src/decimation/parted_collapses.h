@@ -167,10 +167,11 @@ class PartedCollapses {
   void join_halves_of_parts() {
     CollapseMesh& mesh = state_.mesh;
     if (faces_left_.empty()) {
-      faces_left_.resize(mesh.half_edge_bound() / 4);
-      std::iota(faces_left_.begin(), faces_left_.end(), 0u);
+      for (std::uint32_t f = 0; f < mesh.half_edge_bound() / 4; ++f)
+        if (mesh.alive(4 * f)) faces_left_.push_back(f);
+    } else {
+      std::erase_if(faces_left_, [&](std::uint32_t f) { return !mesh.alive(4 * f); });
     }
-    std::erase_if(faces_left_, [&](std::uint32_t f) { return !mesh.alive(4 * f); });
     join_halves(mesh, labels_, faces_left_);
     const auto halves = std::exchange(parts_, {});
     for (std::size_t i = 0; i < halves.size() / 2; ++i)
