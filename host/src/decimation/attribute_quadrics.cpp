@@ -41,12 +41,6 @@ float quadric_at(const CollapseVertex& v, const std::array<float, 3>& x) {
   return moved.c;
 }
 
-void merge(CollapseVertex& kept, const CollapseVertex& gone) {
-  for (std::size_t k = 0; k < 6; ++k) kept.a[k] += gone.a[k];
-  for (std::size_t k = 0; k < 3; ++k) kept.b[k] += gone.b[k];
-  kept.c += gone.c;
-}
-
 /// An end of an edge of a batch.
 void lock(EdgeBatch::Words& end, std::size_t lane) {
   float& flags = end[3][lane];
@@ -287,7 +281,7 @@ void AttributeQuadrics::collapse(std::uint32_t h, const std::array<float, 3>& mo
   const std::uint32_t gone = mesh_.origin(h), kept = mesh_.target(h);
   plain_[gone].shift(move_gone);
   plain_[kept].shift(move_kept);
-  merge(plain_[kept], plain_[gone]);
+  plain_[kept].add_quadric(plain_[gone]);
   wedges_.for_each_at(mesh_, kept, [&](std::uint32_t w) { move(w, move_kept); });
   CollapseVertex& vertex = mesh_.vertices[kept];
   constexpr std::array<float, 3> kSamePlace = {0.0f, 0.0f, 0.0f};
@@ -352,9 +346,7 @@ void AttributeQuadrics::hand_on(std::span<const std::uint32_t> edges, const Seam
   const std::array<float, 3> d = between(heir, v);
   CollapseVertex &left = apart_[heir], moved = apart_[v];
   moved.shift({-d[0], -d[1], -d[2]});
-  for (std::size_t k = 0; k < 6; ++k) left.a[k] += part * moved.a[k];
-  for (std::size_t k = 0; k < 3; ++k) left.b[k] += part * moved.b[k];
-  left.c += part * moved.c;
+  left.add_quadric(moved, part);
   for (std::size_t side = 0; side < sides.count(); ++side) {
     const std::uint32_t from = wedges_.on_side(edges, sides, side),
                         to = wedges_.of_neighbour(edges, sides, side, neighbour);

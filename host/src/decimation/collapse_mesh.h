@@ -65,6 +65,12 @@ struct alignas(64) CollapseVertex {
 #endif
     c = sum > 0 ? sum : 0.0f;
   }
+  /// Adds a share of a quadric about the same point.
+  [[gnu::always_inline]] void add_quadric(const CollapseVertex& of, float share = 1) {
+    for (std::size_t k = 0; k < 6; ++k) a[k] += share * of.a[k];
+    for (std::size_t k = 0; k < 3; ++k) b[k] += share * of.b[k];
+    c += share * of.c;
+  }
 };
 static_assert(sizeof(CollapseVertex) == 64);
 

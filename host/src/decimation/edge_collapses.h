@@ -510,9 +510,7 @@ class EdgeCollapses {
     }
     kept.shift(dk);
     gone.shift(dg);
-    for (std::size_t k = 0; k < 6; ++k) kept.a[k] += gone.a[k];
-    for (std::size_t k = 0; k < 3; ++k) kept.b[k] += gone.b[k];
-    kept.c += gone.c;
+    kept.add_quadric(gone);
     kept.weight += gone.weight;
     if constexpr (kAttributes) {
       share_->state.attributes->collapse(h, dg, dk);

@@ -735,9 +735,7 @@ class VertexRemovals {
     std::array<float, 3> d;
     for (std::size_t k = 0; k < 3; ++k) d[k] = heir.position[k] - gone.position[k];
     moved.shift(d);
-    for (std::size_t k = 0; k < 6; ++k) heir.a[k] += share * moved.a[k];
-    for (std::size_t k = 0; k < 3; ++k) heir.b[k] += share * moved.b[k];
-    heir.c += share * moved.c;
+    heir.add_quadric(moved, share);
     heir.weight += share * moved.weight;
   }
 
