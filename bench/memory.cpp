@@ -49,12 +49,12 @@ class LargeBlocks {
  public:
   static constexpr std::size_t kLeast = std::size_t{1} << 20, kPage = std::size_t{1} << 21;
 
-  void* take(std::size_t size) {
-    const std::size_t room = (size + kPage - 1) / kPage * kPage;
+  void* take(std::size_t size, std::size_t alignment) {
+    const std::size_t room = room_for(size);
     {
       const std::lock_guard lock(mutex_);
       for (std::size_t i = 0; i < count_; ++i)
-        if (room_of(free_[i]) == room) {
+        if (room_for(kept_before(free_[i])->size) == room && address_of(free_[i]) % alignment == 0) {
           void* const block = free_[i];
           free_[i] = free_[--count_];
           return block;
@@ -63,9 +63,12 @@ class LargeBlocks {
     void* const start =
         mmap(nullptr, room + 2 * kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (start == MAP_FAILED) return nullptr;
-    const auto address = reinterpret_cast<std::uintptr_t>(start);
-    void* const block = reinterpret_cast<void*>((address / kPage + 1) * kPage);  // behind what is kept
-    *kept_before(block) = {nullptr, room};
+    // Behind what is kept; and unless they must, no two begin alike, or what is read side by side would have
+    // one place in the caches.
+    const std::size_t apart =
+        alignment < kPage ? made_++ % 31 * (kPage / 32 + kLine) / alignment * alignment : 0;
+    void* const block = static_cast<std::byte*>(start) + (kPage - address_of(start) % kPage) + apart;
+    *kept_before(block) = {nullptr, size};
     return block;
   }
   void give_back(void* block) {
@@ -74,11 +77,14 @@ class LargeBlocks {
   }
 
  private:
-  static std::size_t room_of(void* block) { return (kept_before(block)->size + kPage - 1) / kPage * kPage; }
+  static constexpr std::size_t kLine = 64;
+  static std::size_t room_for(std::size_t size) { return (size + kPage - 1) / kPage * kPage; }
+  static std::uintptr_t address_of(const void* block) { return reinterpret_cast<std::uintptr_t>(block); }
 
   std::mutex mutex_;
   std::array<void*, 1024> free_{};
   std::size_t count_ = 0;
+  std::atomic<std::size_t> made_ = 0;
 };
 LargeBlocks large_blocks;
 #endif
@@ -87,7 +93,7 @@ void* allocate(std::size_t size, std::size_t alignment) {
   void* block = nullptr;
 #if defined(__linux__)
   if (size >= LargeBlocks::kLeast && alignment <= LargeBlocks::kPage) {
-    block = large_blocks.take(size);
+    block = large_blocks.take(size, alignment);
     if (block == nullptr) throw std::bad_alloc();
     kept_before(block)->size = size;
     count(static_cast<std::ptrdiff_t>(size));
