@@ -1,10 +1,10 @@
-// Where edges collapse to, and what that costs: one edge a lane of vector registers.
+#include "decimation/edge_batch.h"
+
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
-#include "decimation/edge_batch.h"
 #include "passes/clones.h"
 
 namespace vkmesh::detail {
