@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <queue>
 #include <random>
 #include <utility>
@@ -226,11 +227,23 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
         planes[i].insert(planes[i].end(), at.begin(), at.end());
       }
     }
-    const auto ends = [&](std::size_t i) { return std::pair(&p[i], &q[i]); };
+    // In one array, out of order.
+    std::vector<CollapseVertex> vertices(2 * count);
+    std::vector<EdgeBatch::Ends> ends(count);
+    for (std::size_t i = 0; i < count; ++i)
+      ends[i] = {static_cast<std::uint32_t>(count - 1 - i),
+                 static_cast<std::uint32_t>(count + (i + 7) % count)};
+    const auto gather = [&](EdgeBatch& batch) {
+      for (std::size_t i = 0; i < count; ++i) {
+        vertices[ends[i][0]] = p[i];
+        vertices[ends[i][1]] = q[i];
+      }
+      batch.gather(vertices.data(), ends);
+    };
     // Each of the ten planes has a weight below 0.6, and nothing is farther than 4 away: values below 100,
     // of some forty operations.
     constexpr double kRounding = 100 * 40.0 / (1 << 24);
-    optimal.gather(count, ends);
+    gather(optimal);
     detail::place_optimally(optimal, count);
     for (std::size_t i = 0; i < count; ++i) {
       const DVec3 x = from[i] + DVec3(optimal.x[0][i], optimal.x[1][i], optimal.x[2][i]);
@@ -258,9 +271,9 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
       CHECK(sum(planes[i], x) < sum(planes[i], best) + kRounding);
     }
     EdgeBatch middle, end;
-    middle.gather(count, ends);
+    gather(middle);
     detail::place_in_middle(middle, count);
-    end.gather(count, ends);
+    gather(end);
     detail::place_at_end(end, count);
     for (std::size_t i = 0; i < count; ++i) {
       const DVec3 to(q[i].position[0], q[i].position[1], q[i].position[2]);
@@ -275,7 +288,7 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
       if (i % 2 == 0) p[i].source |= CollapseVertex::kLocked;
       if (i % 3 == 0) q[i].source |= CollapseVertex::kLocked;
     }
-    optimal.gather(count, ends);
+    gather(optimal);
     detail::place_optimally(optimal, count);
     for (std::size_t i = 0; i < count; ++i) {
       CHECK(optimal.end[i] == (i % 2 == 0 ? 1 : 0) + (i % 3 == 0 ? 2 : 0));
@@ -353,7 +366,11 @@ TEST_CASE("what edges cost whose end moves, and which cost less than before, by 
     }
     const double collapse = sum(of_p, at_q) + sum(of_q, at_q);
     EdgeBatch batch;
-    batch.gather_q(count, [&](std::size_t i) { return &r[i]; });
+    std::vector<std::uint32_t> ends(count);
+    std::iota(ends.rbegin(), ends.rend(), 0u);
+    std::ranges::reverse(r);
+    batch.gather_q(r.data(), ends);
+    std::ranges::reverse(r);
     detail::find_moved_costs(batch, p, q, static_cast<float>(collapse), count);
     for (std::size_t i = 0; i < count; ++i) {
       const double before =

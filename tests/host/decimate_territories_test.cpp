@@ -142,9 +142,8 @@ class Parts {
         ++nowhere;
         continue;
       }
-      batch_.gather(1, [&](std::size_t) {
-        return std::pair(&mesh_.vertices[mesh_.origin(h)], &mesh_.vertices[mesh_.target(h)]);
-      });
+      const std::array<detail::EdgeBatch::Ends, 1> ends = {{{mesh_.origin(h), mesh_.target(h)}}};
+      batch_.gather(mesh_.vertices.data(), ends);
       Placement::place(batch_, 1);
       const std::uint32_t due = MonotoneQueue::bucket(batch_.cost[0]) + 1;  // the next one, by rounding
       if (Placement::kMayFall != detail::MayFall::kNone && found->second > std::max(due, last_)) ++too_high;
@@ -258,7 +257,10 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
       const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
       if (p == mesh.apex() || q == mesh.apex() || !link_condition(mesh, p, q)) continue;
       const auto ring = ring_of(mesh, p);
-      mesh.collapse(h);
+      std::vector<std::uint32_t> others;
+      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out))
+        others.push_back(out);
+      mesh.collapse(h, others);
       everywhere.merge(mesh, p, q, ring);
       if (++collapses % 8 == 0) check(mesh, labels);
     }

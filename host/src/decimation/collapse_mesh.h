@@ -216,15 +216,14 @@ class CollapseMesh {
     /// were one of each.
     std::array<std::array<std::uint32_t, 2>, 2> joined;
   };
-  /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. The link
-  /// condition must hold. O(valence of p).
-  Collapsed collapse(std::uint32_t h) {
+  /// Removes the origin p of h and the two faces at h; what met at p meets at the target q. `others`: the
+  /// half-edges that leave p, but h. The link condition must hold. O(valence of p).
+  Collapsed collapse(std::uint32_t h, std::span<const std::uint32_t> others) {
     const std::uint32_t t = twin(h);
     const std::uint32_t p = origin(h), q = origin(t);
     const std::uint32_t q_to_a = next(h), a_to_p = previous(h);
     const std::uint32_t p_to_b = next(t), b_to_q = previous(t);
-    for (std::uint32_t out = around_vertex(h); out != h; out = around_vertex(out))
-      faces_[out >> 2].origin[out & 3u] = q;
+    for (const std::uint32_t out : others) faces_[out >> 2].origin[out & 3u] = q;
 
     // p → a, now q → a, and a → q; q → b, and b → p, which b → q becomes.
     const Collapsed result = {(is_ghost(h) ? 0u : 1u) + (is_ghost(t) ? 0u : 1u),

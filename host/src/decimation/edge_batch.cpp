@@ -1,10 +1,13 @@
 #include "decimation/edge_batch.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "decimation/four_rows.h"
 #include "passes/clones.h"
 
 namespace vkmesh::detail {
@@ -52,6 +55,68 @@ struct Lane {
 }
 
 }  // namespace
+
+namespace {
+
+/// Some of `count` records of vertices, those from number i on; their numbers are every `stride`-th of `ids`.
+/// The last comes again where there are no more.
+template <std::size_t kSome>
+[[gnu::always_inline]] inline std::array<const char*, kSome> records_of(const CollapseVertex* vertices,
+                                                                        const std::uint32_t* ids,
+                                                                        std::size_t stride, std::size_t i,
+                                                                        std::size_t count) {
+  std::array<const char*, kSome> records;
+  const auto record = [&](std::size_t k) {
+    return reinterpret_cast<const char*>(&vertices[ids[k * stride]]);
+  };
+  if (i + kSome <= count)
+    for (std::size_t k = 0; k < kSome; ++k) records[k] = record(i + k);
+  else
+    for (std::size_t k = 0; k < kSome; ++k) records[k] = record(std::min(i + k, count - 1));
+  return records;
+}
+
+// Turns records from rows to columns: lanes [0, count) of `to`.
+#if defined(VKMESH_HAS_CLONES)
+// The same, eight at a time; the compiler does not find that by itself.
+__attribute__((target("avx2"))) void gather_records(const CollapseVertex* vertices, const std::uint32_t* ids,
+                                                    std::size_t stride, std::size_t count,
+                                                    EdgeBatch::Words& to) {
+  for (std::size_t i = 0; i < count; i += 8) {
+    const auto r = records_of<8>(vertices, ids, stride, i, count);
+#pragma GCC unroll 4
+    for (std::size_t g = 0; g < 16; g += 4) {
+      const std::size_t at = sizeof(float) * g;
+      turn_eight({r[0] + at, r[1] + at, r[2] + at, r[3] + at, r[4] + at, r[5] + at, r[6] + at, r[7] + at},
+                 {&to[g][i], &to[g + 1][i], &to[g + 2][i], &to[g + 3][i]});
+    }
+  }
+}
+
+__attribute__((target("default")))
+#endif
+void gather_records(const CollapseVertex* vertices, const std::uint32_t* ids, std::size_t stride,
+                    std::size_t count, EdgeBatch::Words& to) {
+  for (std::size_t i = 0; i < count; i += 4) {
+    const auto r = records_of<4>(vertices, ids, stride, i, count);
+    for (std::size_t g = 0; g < 16; g += 4) {
+      const std::size_t at = sizeof(float) * g;
+      turn_four({r[0] + at, r[1] + at, r[2] + at, r[3] + at},
+                {&to[g][i], &to[g + 1][i], &to[g + 2][i], &to[g + 3][i]});
+    }
+  }
+}
+
+}  // namespace
+
+void EdgeBatch::gather(const CollapseVertex* vertices, std::span<const Ends> ends) {
+  if (ends.empty()) return;
+  gather_records(vertices, &ends[0][0], 2, ends.size(), p);
+  gather_records(vertices, &ends[0][1], 2, ends.size(), q);
+}
+void EdgeBatch::gather_q(const CollapseVertex* vertices, std::span<const std::uint32_t> ids) {
+  gather_records(vertices, ids.data(), 1, ids.size(), q);
+}
 
 VKMESH_CLONES void place_optimally(EdgeBatch& batch, std::size_t count) {
   // Directions in which the quadric is flatter than this share of its steepest are left to the middle.

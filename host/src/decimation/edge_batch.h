@@ -1,13 +1,12 @@
 // Quadric errors of many edges at once.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "decimation/collapse_mesh.h"
-#include "decimation/four_rows.h"
 
 namespace vkmesh::detail {
 
@@ -26,47 +25,12 @@ struct EdgeBatch {
   alignas(64) std::array<Lanes, 3> x;  // result: where the point goes, relative to p
   alignas(64) Lanes cost;              // result: the sum of both quadrics there
 
-  /// Sets the lanes [0, count): ends(lane) returns the pair of vertices. Four records are turned at a time
-  /// from rows to columns.
-  template <class Ends>
-  void gather(std::size_t count, Ends&& ends) {
-    for_each_four(count, [&](std::size_t lane, const std::array<std::size_t, 4>& of) {
-      std::array<const CollapseVertex*, 4> ps, qs;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const auto [a, b] = ends(of[i]);
-        ps[i] = a;
-        qs[i] = b;
-      }
-      turn(ps, p, lane);
-      turn(qs, q, lane);
-    });
-  }
-  /// The same for q alone: q_of(lane) returns a vertex.
-  template <class End>
-  void gather_q(std::size_t count, End&& q_of) {
-    for_each_four(count, [&](std::size_t lane, const std::array<std::size_t, 4>& of) {
-      turn({q_of(of[0]), q_of(of[1]), q_of(of[2]), q_of(of[3])}, q, lane);
-    });
-  }
-
- private:
-  // four(lane, {lane, …}) for lanes below `count`, of which the last may be named several times.
-  template <class Four>
-  static void for_each_four(std::size_t count, Four&& four) {
-    std::size_t lane = 0;
-    for (; lane + 4 <= count; lane += 4) four(lane, {lane, lane + 1, lane + 2, lane + 3});
-    if (lane < count)
-      four(lane, {lane, std::min(lane + 1, count - 1), std::min(lane + 2, count - 1), count - 1});
-  }
-
-  [[gnu::always_inline]] static void turn(const std::array<const CollapseVertex*, 4>& from, Words& to,
-                                          std::size_t lane) {
-    for (std::size_t g = 0; g < 16; g += 4) {
-      std::array<const void*, 4> rows;
-      for (std::size_t i = 0; i < 4; ++i) rows[i] = reinterpret_cast<const char*>(from[i]) + 4 * g;
-      turn_four(rows, {&to[g][lane], &to[g + 1][lane], &to[g + 2][lane], &to[g + 3][lane]});
-    }
-  }
+  /// The numbers of the vertices p and q.
+  using Ends = std::array<std::uint32_t, 2>;
+  /// Sets a lane for each of these edges.
+  void gather(const CollapseVertex* vertices, std::span<const Ends> ends);
+  /// The same for q alone.
+  void gather_q(const CollapseVertex* vertices, std::span<const std::uint32_t> ids);
 };
 
 /// What a point at p, or at q, costs beside the quadrics.

@@ -85,8 +85,8 @@ class EdgeCollapses {
     const auto make = [this, &prepare, last](std::size_t begin, std::size_t end, First& block) {
       CollapseMesh::Face* const faces = &mesh_.face(0);
       const CollapseVertex* const vertices = vertices_.data();
-      std::uint32_t *const ids = block.ids.data(), *const from = block.from.data(),
-                           *const to = block.to.data();
+      std::uint32_t* const ids = block.ids.data();
+      EdgeBatch::Ends* const ends = block.ends.data();
       std::uint8_t* const numbers = block.number.data();
       std::size_t count = 0;
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
@@ -100,8 +100,7 @@ class EdgeCollapses {
           const std::uint32_t first = h < face.twin[i] ? 1 : 0;  // half of them; nothing foretells which
           tags |= first << i;
           ids[count] = h;
-          from[count] = face.origin[i];
-          to[count] = face.origin[i < 2 ? i + 1 : 0];
+          ends[count] = {face.origin[i], face.origin[i < 2 ? i + 1 : 0]};
           numbers[count] = number[i];
           count += first;
         }
@@ -110,9 +109,7 @@ class EdgeCollapses {
       block.count = count;
       for (std::size_t i = 0; i < count; i += EdgeBatch::kSize) {
         const auto some = std::span(block.ids).subspan(i, std::min(EdgeBatch::kSize, count - i));
-        evaluate(some, block.batch, [i, from, to, vertices](std::size_t k) {
-          return std::pair(&vertices[from[i + k]], &vertices[to[i + k]]);
-        });
+        evaluate(some, std::span(block.ends).subspan(i, some.size()), block.batch);
         rank(some, block.batch, block.star, &block.cost[i]);
       }
     };
@@ -185,8 +182,7 @@ class EdgeCollapses {
   struct First {
     static constexpr std::size_t kMost = 3 * kFirstFaces + 1;  // one more is written
     std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(kMost);
-    std::vector<std::uint32_t> from = std::vector<std::uint32_t>(kMost);
-    std::vector<std::uint32_t> to = std::vector<std::uint32_t>(kMost);
+    std::vector<EdgeBatch::Ends> ends = std::vector<EdgeBatch::Ends>(kMost);
     std::vector<std::uint8_t> number = std::vector<std::uint8_t>(kMost);
     std::vector<float> cost = std::vector<float>(kMost);
     EdgeBatch batch;
@@ -196,19 +192,16 @@ class EdgeCollapses {
 
   // The edges of these half-edges, into the batch.
   void evaluate(std::span<const std::uint32_t> edges) {
-    const CollapseMesh::Face* const faces = mesh_.faces();
-    const CollapseVertex* const vertices = vertices_.data();
-    evaluate(edges, batch_, [edges, faces, vertices](std::size_t i) {
-      const CollapseMesh::Face& face = faces[edges[i] >> 2];
-      const std::uint32_t corner = edges[i] & 3u;
-      return std::pair(&vertices[face.origin[corner]],
-                       &vertices[face.origin[CollapseMesh::kNextCorner[corner]]]);
-    });
+    std::array<EdgeBatch::Ends, EdgeBatch::kSize> ends;
+    for (std::size_t i = 0; i < edges.size(); ++i) ends[i] = ends_of(mesh_.face(edges[i]), edges[i]);
+    evaluate(edges, std::span(ends).first(edges.size()), batch_);
   }
-  // ends(i): the vertices of edge i.
-  template <class Ends>
-  void evaluate(std::span<const std::uint32_t> edges, EdgeBatch& batch, Ends&& ends) const {
-    batch.gather(edges.size(), ends);
+  [[nodiscard]] static EdgeBatch::Ends ends_of(const CollapseMesh::Face& face, std::uint32_t h) {
+    return {face.origin[h & 3u], face.origin[CollapseMesh::kNextCorner[h & 3u]]};
+  }
+  void evaluate(std::span<const std::uint32_t> edges, std::span<const EdgeBatch::Ends> ends,
+                EdgeBatch& batch) const {
+    batch.gather(vertices_.data(), ends);
     if constexpr (kAttributes && Placement::kAtEnds) {
       EndCosts end_costs;
       share_->state.attributes->add_to_ends(batch, edges, end_costs);
@@ -259,19 +252,22 @@ class EdgeCollapses {
     if (b.count == 0) return;
     // Conditions that cannot be foretold count, and do not jump.
     std::size_t live = 0;
+    std::array<EdgeBatch::Ends, Queue::kBatch> ends;
     const std::uint32_t seam = share_->territory.is_part() ? 1u << CollapseMesh::kSeamShift : 0;
     const CollapseMesh::Face* const faces = mesh_.faces();
-    for (const std::uint32_t h : std::span(b.ids).first(b.count)) {
-      const std::uint32_t tags = faces[h >> 2].tags >> (h & 3u), queued = tags & 1u;
+    for (const std::uint32_t h : std::span(b.ids).first(b.queued)) {
+      const CollapseMesh::Face& face = faces[h >> 2];
+      const std::uint32_t tags = face.tags >> (h & 3u), queued = tags & 1u;
       if ((tags & seam) != 0) [[unlikely]] {
         if (queued != 0) share_->handed_on.push_back(h);
         continue;
       }
       b.ids[live] = h;
+      ends[live] = ends_of(face, h);
       live += queued;
     }
     const auto ids = std::span(b.ids).first(live);
-    evaluate(ids);
+    evaluate(ids, std::span(ends).first(live), batch_);
     const float* const ranks = ranks_of(ids);
     b.evaluated = true;
     b.due_count = 0;
@@ -303,8 +299,7 @@ class EdgeCollapses {
     for (auto& b : pending_) {
       for (std::size_t i = b->tried; i < b->due_count; ++i) put_back(b->due[i].half_edge);
       // Those that were evaluated are due, or in the queue again.
-      if (!b->evaluated)
-        for (const std::uint32_t h : std::span(b->ids).first(b->count)) put_back(h);
+      if (!b->evaluated) b->for_each_waiting([&](std::uint32_t h) { put_back(h); });
       b->reset();
     }
   }
@@ -348,22 +343,30 @@ class EdgeCollapses {
     return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
   }
 
-  /// The neighbours of a vertex but one, counter-clockwise. What follows up to a multiple of
-  /// WalkedRing::kMost is there, too.
+  /// The neighbours of p but q and those of q but p, counter-clockwise, and the half-edges from p and q to
+  /// them. What follows the neighbours up to a multiple of WalkedRing::kMost is there, too.
   using Ring = std::span<const std::uint32_t>;
   struct Rings {
-    Ring p, q;
+    Ring p, q, from_p, from_q;
   };
 
-  // Of the origin of h, from beyond its target.
-  Ring collect_ring(std::uint32_t h, std::vector<std::uint32_t>& ring) const {
-    ring.clear();
-    for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out))
-      ring.push_back(mesh_.target(out));
-    const std::size_t size = ring.size();
-    ring.resize((size + WalkedRing::kMost - 1) / WalkedRing::kMost * WalkedRing::kMost);
-    return Ring(ring).first(size);
-  }
+  /// A ring of any size.
+  struct LongRing {
+    std::vector<std::uint32_t> vertices, edges;
+    std::size_t size = 0;
+
+    // Of the origin of h, from beyond its target.
+    void collect(const CollapseMesh& mesh, std::uint32_t h) {
+      vertices.clear();
+      edges.clear();
+      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out)) {
+        vertices.push_back(mesh.target(out));
+        edges.push_back(out);
+      }
+      size = vertices.size();
+      vertices.resize((size + WalkedRing::kMost - 1) / WalkedRing::kMost * WalkedRing::kMost);
+    }
+  };
 
   void attempt(const Pending& b, std::size_t i) {
     const Due& due = b.due[i];
@@ -453,12 +456,16 @@ class EdgeCollapses {
   Rings rings_of(const Pending& b, std::size_t i) {
     const WalkedRing &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
     if (at_p.is_whole() && at_q.is_whole()) {
-      const Rings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size)};
+      const Rings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size),
+                        Ring(at_p.edge).first(at_p.size), Ring(at_q.edge).first(at_q.size)};
       ring_flags_ = rim_.set(vertices_, rings.p, rings.q);
       if ((ring_flags_ & CollapseVertex::kTouched) == 0) return rings;
     }
     const std::uint32_t h = b.due[i].half_edge;
-    const Rings rings{collect_ring(h, ring_p_), collect_ring(mesh_.twin(h), ring_q_)};
+    ring_p_.collect(mesh_, h);
+    ring_q_.collect(mesh_, mesh_.twin(h));
+    const Rings rings{Ring(ring_p_.vertices).first(ring_p_.size), Ring(ring_q_.vertices).first(ring_q_.size),
+                      ring_p_.edges, ring_q_.edges};
     ring_flags_ = rim_.set(vertices_, rings.p, rings.q);
     return rings;
   }
@@ -495,9 +502,10 @@ class EdgeCollapses {
       const Wedges& wedges = share_->state.attributes->wedges();
       if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
     }
-    h ^= (h ^ mesh_.twin(h)) & (0u - static_cast<std::uint32_t>(keep_p));  // its twin, with no jump
-    CollapseVertex &kept = keep_p ? vp : vq, &gone = keep_p ? vq : vp;
-    const std::uint32_t q_now = keep_p ? p : q;
+    // With no jump, which nothing could foretell.
+    const std::uint32_t if_p = 0u - static_cast<std::uint32_t>(keep_p), q_now = q ^ ((p ^ q) & if_p);
+    h ^= (h ^ mesh_.twin(h)) & if_p;
+    CollapseVertex &kept = vertices_[q_now], &gone = vertices_[p ^ q ^ q_now];
 
     if constexpr (Placement::kMayFall == MayFall::kOfGone) {
       collect_moved(h);
@@ -538,7 +546,7 @@ class EdgeCollapses {
       share_->state.criteria->keep(star_);
     erase_queued(h);
     erase_queued(t);
-    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h);
+    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, keep_p ? rings.from_q : rings.from_p);
     share_->state.faces -= collapsed.faces;
     --share_->state.vertices;
     ++share_->state.outcome.collapses;
@@ -614,7 +622,9 @@ class EdgeCollapses {
       if constexpr (kAttributes) {
         evaluate_moved(moved);
       } else {
-        batch_.gather_q(moved.size(), [&](std::size_t i) { return &vertices_[moved[i].end]; });
+        std::array<std::uint32_t, EdgeBatch::kSize> ends;
+        for (std::size_t i = 0; i < moved.size(); ++i) ends[i] = moved[i].end;
+        batch_.gather_q(vertices_.data(), std::span(ends).first(moved.size()));
         find_moved_costs(batch_, gone, kept, cost, moved.size());
       }
       for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -713,7 +723,8 @@ class EdgeCollapses {
   // Edges to be queued when the batch is done.
   std::array<std::uint32_t, 2 * Queue::kBatch + 2> again_;
   std::size_t again_count_ = 0;
-  std::vector<std::uint32_t> before_, touched_, sorted_, ring_p_, ring_q_;
+  std::vector<std::uint32_t> before_, touched_, sorted_;
+  LongRing ring_p_, ring_q_;
   std::vector<Moved> moved_;
   EdgeRim rim_;
   std::uint32_t ring_flags_ = 0;

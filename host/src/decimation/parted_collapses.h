@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -108,6 +110,7 @@ class PartedCollapses {
     void report_to(DecimationState& all) {
       all.faces -= kRest + faces - state.faces;
       all.vertices -= kRest + vertices - state.vertices;
+      collapses = state.outcome.collapses;
       all.outcome += state.outcome;
       state.outcome = {};
     }
@@ -115,6 +118,7 @@ class PartedCollapses {
     static constexpr std::size_t kRest = 2;  // faces that a collapse may remove beyond the limit
     Limits limits;
     std::size_t faces = 0, vertices = 0;
+    std::size_t collapses = 0;  // of the last round, of which the next will have about as many
     DecimationState state;
     Share share;
   };
@@ -135,8 +139,13 @@ class PartedCollapses {
     const std::size_t divisor = 2 * parts_.size(), faces = (state_.faces - state_.limits.faces) / divisor,
                       vertices = (state_.vertices - state_.limits.vertices) / divisor;
     for (const auto& part : parts_) part->share.watch(state_);
+    // Those with most to do first, or threads would wait for the last of them.
+    std::vector<Part*> by_work;
+    for (const auto& part : parts_) by_work.push_back(part.get());
+    std::ranges::stable_sort(by_work, std::ranges::greater(), &Part::collapses);
+    std::atomic<std::size_t> next = 0;
     parallel_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) parts_[i]->run(workers_.local(), faces, vertices, last);
+      for (; begin < end; ++begin) by_work[next++]->run(workers_.local(), faces, vertices, last);
     });
     Worker& worker = mine();
     const auto done = static_cast<std::ptrdiff_t>(state_.outcome.events.size());

@@ -21,11 +21,11 @@ struct DueEdge {
   std::array<float, 3> x;
 };
 
-/// The neighbours of a vertex but one, counter-clockwise.
+/// The neighbours of a vertex but one, counter-clockwise, and the half-edges from it to them.
 struct WalkedRing {
   static constexpr std::uint32_t kMost = 16, kTooLong = ~0u;
-  std::array<std::uint32_t, kMost> vertex;  // the first `size` are meant
-  std::uint32_t size;                       // kTooLong when there are more
+  std::array<std::uint32_t, kMost> vertex, edge;  // the first `size` are meant
+  std::uint32_t size;                             // kTooLong when there are more
 
   [[nodiscard]] bool is_whole() const { return size != kTooLong; }
 };
@@ -38,14 +38,14 @@ struct PendingEdges {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
   std::array<std::uint32_t, kBatch> ids;  // `count` half-edges were taken from the queue
-  std::size_t count = 0;
+  std::size_t count = 0, queued = 0;
   bool evaluated = false;
   std::array<DueEdge, kBatch> due;  // of these `due_count` are due, and `tried` done
   std::size_t due_count = 0, tried = 0;
   std::array<WalkedRing, 2 * kBatch> walked;  // those of p and q of each due edge
 
   void reset() {
-    count = faces_fetched_ = ends_fetched_ = due_count = walks_ = tried = 0;
+    count = queued = faces_fetched_ = ends_fetched_ = due_count = walks_ = tried = 0;
     evaluated = false;
   }
 
@@ -57,7 +57,8 @@ struct PendingEdges {
     faces_fetched_ = end;
   }
 
-  /// The ends of `some` more of those taken.
+  /// The ends of `some` more of those taken. What the queue holds no more in earnest is left out from now on:
+  /// the first `queued` of `ids` remain.
   void fetch_ends(const CollapseMesh& mesh, std::size_t some) {
     const std::size_t end = some < count - ends_fetched_ ? ends_fetched_ + some : count;
     const CollapseMesh::Face* const faces = mesh.faces();
@@ -65,12 +66,21 @@ struct PendingEdges {
     for (std::size_t i = ends_fetched_; i < end; ++i) {
       const std::uint32_t h = ids[i], corner = h & 3u;
       const CollapseMesh::Face& face = faces[h >> 2];
-      // All bits where it is: nothing foretells it, so there is no jump.
-      const std::uint32_t queued = 0 - (face.tags >> corner & 1u);
-      prefetch(&vertices[face.origin[corner] & queued]);
-      prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & queued]);
+      // Nothing foretells whether it is, so there is no jump: a vertex that is asked for anyway.
+      const std::uint32_t is = face.tags >> corner & 1u;
+      prefetch(&vertices[face.origin[corner] & (0 - is)]);
+      prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & (0 - is)]);
+      ids[queued] = h;
+      queued += is;
     }
     ends_fetched_ = end;
+  }
+
+  /// Calls f(half-edge) for all that were taken and not left out.
+  template <class F>
+  void for_each_waiting(F&& f) const {
+    for (std::size_t i = 0; i < queued; ++i) f(ids[i]);
+    for (std::size_t i = ends_fetched_; i < count; ++i) f(ids[i]);
   }
 
   /// When all that are due are known.
@@ -105,6 +115,7 @@ struct PendingEdges {
         prefetch(&vertices[v]);
         prefetch(&faces[out >> 2]);
         ring->vertex[steps] = v;
+        ring->edge[steps] = out;
         // What an earlier batch takes away meanwhile leads to where it lay.
         ring->size = v == kInvalid ? WalkedRing::kTooLong : steps;
         *left = {out, start, ring};

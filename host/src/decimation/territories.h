@@ -57,7 +57,8 @@ void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<c
 
 /// Tells a face which of its edges are at the seam, and returns for each who sees to it: a part, or
 /// Territory::kSeam. No part may be at work before all faces know.
-inline std::array<std::uint8_t, 3> mark_seam(std::span<const std::uint8_t> labels, CollapseMesh::Face& face) {
+[[gnu::always_inline]] inline std::array<std::uint8_t, 3> mark_seam(std::span<const std::uint8_t> labels,
+                                                                    CollapseMesh::Face& face) {
   const std::array<std::uint8_t, 3> at = {labels[face.origin[0]], labels[face.origin[1]],
                                           labels[face.origin[2]]};
   std::array<std::uint8_t, 3> owner;
