@@ -118,33 +118,35 @@ class CollapseMesh::SmallFan {
  private:
   template <std::uint32_t kCount>
   bool join_some(LargeArray<Face>& faces, const std::uint32_t* leaving) {
-    std::array<std::uint32_t, kCount> to, from, clockwise;
+    std::array<std::uint32_t, kMost> to, from, before, clockwise;
+    std::fill(from.begin() + kCount, from.end(), kInvalid);  // of no half-edge
     for (std::uint32_t i = 0; i < kCount; ++i) {
-      const Face& face = faces[leaving[i] >> 2];
-      to[i] = face.origin[CollapseMesh::kNextCorner[leaving[i] & 3u]];
-      from[i] = face.origin[CollapseMesh::kPreviousCorner[leaving[i] & 3u]];
+      const std::uint32_t h = leaving[i], corner = h & 3u;
+      const Face& face = faces[h >> 2];
+      to[i] = face.origin[CollapseMesh::kNextCorner[corner]];
+      from[i] = face.origin[CollapseMesh::kPreviousCorner[corner]];
+      before[i] = (h & ~3u) | CollapseMesh::kPreviousCorner[corner];
       table_[from[i] % kTable] = static_cast<std::uint8_t>(i);
     }
-    constexpr std::uint32_t kAll = (1u << kCount) - 1;
-    std::uint32_t found = 0, seen = 0, at = 0;
+    std::uint32_t different = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-      const std::uint32_t j = table_[to[i] % kTable] % 8;
-      clockwise[i] = j < kCount ? j : 0;
-      found |= static_cast<std::uint32_t>(from[clockwise[i]] == to[i]) << clockwise[i];
+      clockwise[i] = table_[to[i] % kTable] % kMost;
+      different |= from[clockwise[i]] ^ to[i];
     }
+    // All are found, and going on from one comes by all.
+    if (different != 0) return false;
+    std::uint32_t seen = 0, at = 0;
     for (std::uint32_t k = 0; k < kCount; ++k) {
       seen |= 1u << at;
       at = clockwise[at];
     }
-    if ((found & seen) != kAll) return false;
-    for (std::uint32_t i = 0; i < kCount; ++i) {
-      const std::uint32_t h = leaving[clockwise[i]];
-      faces[leaving[i] >> 2].twin[leaving[i] & 3u] = (h & ~3u) | CollapseMesh::kPreviousCorner[h & 3u];
-    }
+    if (seen != (1u << kCount) - 1) return false;
+    for (std::uint32_t i = 0; i < kCount; ++i)
+      faces[leaving[i] >> 2].twin[leaving[i] & 3u] = before[clockwise[i]];
     return true;
   }
 
-  static constexpr std::uint32_t kTable = 256;
+  static constexpr std::uint32_t kMost = 8, kTable = 256;
   std::array<std::uint8_t, kTable> table_{};  // by the low bits of `from`
 };
 

@@ -14,6 +14,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include "collect.h"
 #include "decimation/collapse_queues.h"
 #include "decimation/driver.h"
 #include "decimation/edge_collapses.h"
@@ -175,8 +176,7 @@ class PartedCollapses {
   void join_halves_of_parts() {
     CollapseMesh& mesh = state_.mesh;
     if (faces_left_.empty()) {
-      for (std::uint32_t f = 0; f < mesh.half_edge_bound() / 4; ++f)
-        if (mesh.alive(4 * f)) faces_left_.push_back(f);
+      faces_left_ = collect(mesh.half_edge_bound() / 4, [&](std::uint32_t f) { return mesh.alive(4 * f); });
     } else {
       std::erase_if(faces_left_, [&](std::uint32_t f) { return !mesh.alive(4 * f); });
     }

@@ -53,6 +53,9 @@ struct PendingEdges {
   void fetch_faces(const CollapseMesh& mesh, std::size_t some) {
     const std::size_t end = some < count - faces_fetched_ ? faces_fetched_ + some : count;
     const CollapseMesh::Face* const faces = mesh.faces();
+#if defined(__GNUC__)
+#pragma GCC unroll 4
+#endif
     for (std::size_t i = faces_fetched_; i < end; ++i) prefetch(&faces[ids[i] >> 2]);
     faces_fetched_ = end;
   }

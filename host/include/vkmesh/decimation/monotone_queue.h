@@ -70,7 +70,9 @@ class MonotoneQueue {
     while (count < out.size() && end != 0) {
       const std::uint32_t chunk = (end - 1) / kChunk * kChunk;
       const std::size_t some = std::min<std::size_t>(end - chunk - 1, out.size() - count);
-      for (std::size_t i = 0; i < some; ++i) out[count++] = words_[--end];
+      std::reverse_copy(words_.data() + end - some, words_.data() + end, out.data() + count);
+      end -= static_cast<std::uint32_t>(some);
+      count += some;
       if (end != chunk + 1) continue;
       end = words_[chunk];
       words_[chunk] = free_;
