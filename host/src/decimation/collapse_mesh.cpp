@@ -223,23 +223,27 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
   return close(boundary);
 }
 
-// Puts a ghost, the triangle (target, origin, apex), beyond each boundary edge.
+// Puts a ghost, the triangle (target, origin, apex), beyond each boundary edge; these in the order of their
+// origins, of which none comes twice.
 bool CollapseMesh::close(std::span<const std::uint32_t> boundary) {
   const std::size_t all = face_count_ + boundary.size();
   if (all > kMaxFaces) return false;
   if (all > faces_.size()) faces_.grow(all, face_count_);
   auto ghost = static_cast<std::uint32_t>(face_count_);
-  std::vector<std::uint32_t> ghost_from(boundary.empty() ? 0 : apex_);  // by vertex: fans are single
   for (const std::uint32_t h : boundary) {
     const std::uint32_t from = origin(h), to = target(h);
-    ghost_from[from] = ghost;
     faces_[ghost] = {{to, from, apex_}, 0, {}, kInvalid};
     set_twins(h, 4 * ghost);
     ++ghost;
   }
   // The ghost of v → w arrives from the apex where that of the next edge w → x leaves for it.
-  for (auto g = static_cast<std::uint32_t>(face_count_); g < ghost; ++g)
-    set_twins(4 * g + 2, 4 * ghost_from[faces_[g].origin[0]] + 1);
+  for (auto g = static_cast<std::uint32_t>(face_count_); g < ghost; ++g) {
+    const auto next = std::ranges::lower_bound(boundary, faces_[g].origin[0], {},
+                                               [this](std::uint32_t h) { return origin(h); });
+    const auto its_ghost =
+        static_cast<std::uint32_t>(face_count_) + static_cast<std::uint32_t>(next - boundary.begin());
+    set_twins(4 * g + 2, 4 * its_ghost + 1);
+  }
   ghosts_ = boundary.size();
   return true;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -54,6 +55,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   // Vertices and faces in the order of the input. The records are read once; what follows is in small arrays.
   const auto& vertices = mesh.vertices;
   const std::size_t n = points.size();
+  constexpr std::size_t kGrain = std::size_t{1} << 15;
   constexpr std::uint32_t kMask = CollapseVertex::kSourceMask;
   const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
   // The numbers in the order of the input of records, whose own numbers these are.
@@ -79,19 +81,26 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     return vertex.alive();
   });
   result.source_vertex = in_input_order(alive, n, source_of);
-  for (bool changed = true; changed;) {
+  // Each looks at others that another thread may be changing: all come to the same end.
+  const auto follow = [&](std::size_t begin, std::size_t end) {
     std::uint32_t change = 0;
-    for (std::uint32_t& b : by) {
-      const std::uint32_t next = by[b];
+    for (std::size_t v = begin; v < end; ++v) {
+      const std::atomic_ref<std::uint32_t> mine(by[v]);
+      const std::uint32_t b = mine.load(std::memory_order_relaxed);
+      const std::uint32_t next = std::atomic_ref(by[b]).load(std::memory_order_relaxed);
       change |= b ^ next;
-      b = next;
+      mine.store(next, std::memory_order_relaxed);
     }
-    changed = change != 0;
+    return std::size_t{change != 0 ? 1u : 0u};
+  };
+  while (parallel_sum<std::size_t>(n, kGrain, follow) > 0) {
   }
   std::vector<std::uint32_t> new_vertex(n, kInvalid);
   for (std::uint32_t i = 0; i < result.source_vertex.size(); ++i) new_vertex[result.source_vertex[i]] = i;
   result.vertex_map.resize(n);
-  for (std::uint32_t v = 0; v < n; ++v) result.vertex_map[v] = new_vertex[by[v]];
+  parallel_ranges(n, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) result.vertex_map[v] = new_vertex[by[v]];
+  });
   by = std::vector<std::uint32_t>();
   result.positions.resize(alive.size());
   for (const std::uint32_t v : alive) {
@@ -122,8 +131,10 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
       }
     }
   });
+  // The first of each vertex, or that on the boundary.
+  for (auto h = static_cast<std::uint32_t>(origin.size()); h-- > 0;) leading[origin[h]] = h;
   for (std::uint32_t h = 0; h < origin.size(); ++h)
-    if (leading[origin[h]] == kInvalid || twin[h] == kInvalid) leading[origin[h]] = h;
+    if (twin[h] == kInvalid) leading[origin[h]] = h;
   result.mesh = HalfEdgeMesh::from_arrays(std::move(origin), std::move(twin), std::move(leading));
   return result;
 }

@@ -21,7 +21,7 @@ float along(const Position& position, std::size_t axis) {
   return (position[axis] + 0.5f) * kCells;
 }
 
-constexpr std::size_t kGrain = std::size_t{1} << 16;
+constexpr std::size_t kGrain = std::size_t{1} << 14;
 
 /// Where parts are cut in halves: part i of a level by cut i of that level, into parts 2i and 2i + 1 of the
 /// next.
