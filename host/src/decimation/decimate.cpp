@@ -240,6 +240,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   leading = std::vector<std::uint32_t>();
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());  // it lies nowhere
+  mesh.vertices[mesh.apex()].source = CollapseVertex::kLocked;  // which tells rings at the boundary
   lock(mesh, corners, options);
   if (options.boundary == DecimateBoundary::kKept)
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)

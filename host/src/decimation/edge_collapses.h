@@ -55,6 +55,7 @@ class EdgeCollapses {
     std::vector<std::uint32_t> handed_on, to_revive;
     /// What the square of a distance costs at least; 0 while points may move as they like.
     float cost_of_distance = 0;
+    bool only_at_boundary = false;  // or at locked vertices
 
     /// `all`: what has been done, in all parts. Once few faces are left points must not move far for what the
     /// planes say that costs. It depends on nothing but how many are left, and changes when they are half as
@@ -62,9 +63,11 @@ class EdgeCollapses {
     void watch(const DecimationState& all) {
       const std::size_t share = std::bit_floor(all.mesh.face_count() / std::max<std::size_t>(all.faces, 1));
       const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
-      cost_of_distance = share >= kFewLeft ? static_cast<float>(edge_weight / kFarthest2) : 0.0f;
+      cost_of_distance = share >= kFewAtBoundary ? static_cast<float>(edge_weight / kFarthest2) : 0.0f;
+      only_at_boundary = share < kFewLeft;
     }
-    static constexpr std::size_t kFewLeft = 16;  // a sixteenth of the faces
+    /// A sixteenth of the faces, and a fourth at the boundary, where tips are cut off at next to no cost.
+    static constexpr std::size_t kFewLeft = 16, kFewAtBoundary = 4;
     /// How far, in roots of the mean square distance that a cost stands for; squared.
     static constexpr double kFarthest2 = 2.25;
   };
@@ -380,7 +383,7 @@ class EdgeCollapses {
     Rings rings;
     const Legality legality = judge(b, i, p, q, rings);
     if (legality == Legality::kLegal) {
-      if (!Placement::kByCriteria && share_->cost_of_distance > 0 && is_put_off(due, p, q)) return;
+      if (!Placement::kByCriteria && watches_distance() && is_put_off(due, p, q)) return;
       collapse(due, p, q, rings);
     } else {
       ++share_->state.outcome.rejected[static_cast<std::size_t>(legality)];
@@ -391,6 +394,11 @@ class EdgeCollapses {
     }
   }
 
+  /// Of the edge whose rings these are.
+  [[nodiscard]] bool watches_distance() const {
+    return share_->cost_of_distance > 0 &&
+           (!share_->only_at_boundary || (ring_flags_ & CollapseVertex::kLocked) != 0);
+  }
   /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
   /// collapse waits until the costs that are due allow for the distance between the faces before and after.
   [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
