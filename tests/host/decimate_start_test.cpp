@@ -270,8 +270,11 @@ TEST_CASE("decimation: every face of a large surface comes from its own, by the 
       const auto result = decimate(TriangleSurface{mesh.points, mesh.corners}, options);
       REQUIRE(result);
       REQUIRE(validate(result->mesh));
-      CHECK(result->mesh.face_count() ==
-            static_cast<std::size_t>(std::llround(ratio * static_cast<double>(mesh.face_count()))));
+      // The last collapse may take two faces.
+      const auto target =
+          static_cast<std::size_t>(std::llround(ratio * static_cast<double>(mesh.face_count())));
+      CHECK(result->mesh.face_count() <= target);
+      CHECK(result->mesh.face_count() + 1 >= target);
       std::size_t wrong = 0;
       for (std::size_t f = 0; f < result->mesh.face_count(); ++f)
         for (std::size_t i = 0; i < 3; ++i)

@@ -416,6 +416,34 @@ TEST_CASE("decimation: boundaries stay with weight and shrink without", "[decima
   CHECK(area(run(mesh, options)) < 0.9 * before);
 }
 
+TEST_CASE("decimation: thin tips of the boundary stay when little is left", "[decimate]") {
+  const DecimateOperation operation =
+      GENERATE(DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse);
+  // Rough ground with tips far longer than wide: next to no planes are far from where one is cut off.
+  constexpr std::uint32_t kSide = 60;
+  constexpr float kLength = 3, kWidth = 0.1f;
+  IndexedFaceSet mesh = test::grid(kSide, kSide);
+  std::mt19937 random(1);
+  for (Vec3& p : mesh.points) p.z = 0.2f * (static_cast<float>(random()) / 4294967296.0f - 0.5f);
+  std::vector<std::uint32_t> tips;
+  for (std::uint32_t x = 2; x + 2 < kSide; x += 4) {  // the points of the row y = 0 come first
+    const float left = mesh.points[x].x;
+    mesh.points[x + 1].x = left + kWidth;
+    const auto tip = static_cast<std::uint32_t>(mesh.points.size());
+    tips.push_back(tip);
+    mesh.points.push_back({left + kWidth / 2, -kLength, 0});
+    for (const std::uint32_t corner : {x + 1, x, tip}) mesh.corners.push_back(corner);
+  }
+  for (const std::size_t part : {10u, 20u}) {
+    const Decimated result = run(mesh, to_faces(operation, mesh.face_count() / part));
+    CHECK(result.stop == DecimateStop::kTargetReached);
+    for (const std::uint32_t tip : tips) {
+      const Vec3 away = result.positions[result.vertex_map[tip]] - mesh.points[tip];
+      CHECK(dot(away, away) < 0.25f * kLength * kLength);
+    }
+  }
+}
+
 TEST_CASE("decimation: a smaller angle forbids more", "[decimate]") {
   const DecimateOperation operation = any_operation();
   IndexedFaceSet mesh = test::icosphere(3);
@@ -670,16 +698,18 @@ TEST_CASE("decimation: the dragon to a tenth stays manifold and near", "[decimat
                                            {result.positions, result.mesh.origins()}, {20000, 1});
     REQUIRE(distance);
     CHECK(distance->two_sided().mean < mean * distance->diagonal);
+    if (operation == DecimateOperation::kEdgeCollapse)
+      CHECK(distance->two_sided().maximum < 4.9e-4 * distance->diagonal);
   }
   // To a hundredth, where points that moved far within their planes made the largest error: on twelve inputs
-  // that differ by rounding and order it was 3.5e-3 to 6.1e-3 before they had to wait, and is 2.4e-3
-  // to 3.0e-3.
+  // that differ by rounding and order it was 3.5e-3 to 6.1e-3 before they had to wait, and on twenty-four it
+  // is 2.3e-3 to 2.8e-3.
   const Decimated few = run(input, mesh->points, to_faces(DecimateOperation::kEdgeCollapse, 8713));
   const auto distance =
       surface_distance({mesh->points, mesh->corners}, {few.positions, few.mesh.origins()}, {200000, 1});
   REQUIRE(distance);
   CHECK(distance->two_sided().mean < 3.15e-4 * distance->diagonal);
-  CHECK(distance->two_sided().maximum < 3.2e-3 * distance->diagonal);
+  CHECK(distance->two_sided().maximum < 2.8e-3 * distance->diagonal);
 }
 
 }  // namespace vkmesh
