@@ -58,6 +58,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   constexpr std::size_t kGrain = std::size_t{1} << 15;
   constexpr std::uint32_t kMask = CollapseVertex::kSourceMask;
   const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
+  const auto source_of_face = [&](std::uint32_t f) { return in_order ? f : mesh.face(4 * f).source; };
   // The numbers in the order of the input of records, whose own numbers these are.
   const auto in_input_order = [&](const std::vector<std::uint32_t>& records, std::size_t count,
                                   auto&& source) {
@@ -112,8 +113,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
 
   const std::vector<std::uint32_t> alive_faces =
       collect(mesh.face_count(), [&](std::uint32_t f) { return mesh.alive(4 * f); });
-  result.source_face = in_input_order(alive_faces, mesh.face_count(),
-                                      [&](std::uint32_t f) { return mesh.face(4 * f).source; });
+  result.source_face = in_input_order(alive_faces, mesh.face_count(), source_of_face);
   const auto new_face_of =
       std::make_unique_for_overwrite<std::uint32_t[]>(mesh.face_count());  // of those alive
   const std::span new_face(new_face_of.get(), mesh.face_count());
@@ -127,7 +127,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
       for (std::uint32_t i = 0; i < 3; ++i) {
         const std::uint32_t h = 3 * new_face[face.source] + i, t = face.twin[i];
         origin[h] = new_vertex[source_of(face.origin[i])];
-        twin[h] = mesh.is_ghost(t) ? kInvalid : 3 * new_face[mesh.face(t).source] + t % 4;
+        twin[h] = mesh.is_ghost(t) ? kInvalid : 3 * new_face[source_of_face(t / 4)] + t % 4;
       }
     }
   });
