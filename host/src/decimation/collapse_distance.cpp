@@ -141,6 +141,28 @@ VKMESH_CLONES void bound_spokes(const float* __restrict cx, const float* __restr
   }
 }
 
+// Squared, from a point to each of the faces, the new ones or the old ones at p and q; most often the least.
+VKMESH_CLONES void bound_faces(const float* __restrict cx, const float* __restrict cy,
+                               const float* __restrict cz, const Lie& lie, const Vector& point,
+                               const Vector& third_at_p, const Vector& third_at_q, float* __restrict to) {
+  const float x0 = lie.place[0], x1 = lie.place[1], x2 = lie.place[2];
+  const float p0 = third_at_p[0], p1 = third_at_p[1], p2 = third_at_p[2];
+  const float q0 = third_at_q[0], q1 = third_at_q[1], q2 = third_at_q[2];
+  const float w0 = point[0], w1 = point[1], w2 = point[2];
+  for (std::int32_t left = lie.faces, at_p = lie.at_p; left > 0; left -= kBlock, at_p -= kBlock) {
+    for (std::int32_t k = 0; k < kBlock; ++k) {  // so many and no others, or g++ 12 does it one by one
+      const bool at_q = k >= at_p;
+      const float ox = at_q ? q0 : p0, oy = at_q ? q1 : p1, oz = at_q ? q2 : p2;
+      to[k] = to_point_of(w0, w1, w2, ox, oy, oz, cx[k] - x0, cy[k] - x1, cz[k] - x2, cx[k + 1] - x0,
+                          cy[k + 1] - x1, cz[k + 1] - x2);
+    }
+    cx += kBlock;
+    cy += kBlock;
+    cz += kBlock;
+    to += kBlock;
+  }
+}
+
 }  // namespace
 
 float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Vector& q, const Vector& x,
@@ -161,48 +183,51 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
       {p[0] + x[0], p[1] + x[1], p[2] + x[2]}, at_p, at_q, middle, static_cast<std::int32_t>(faces_at_p),
       static_cast<std::int32_t>(some)};
 
-  // `near`: a distance that is known. The faces from `first` on are the likeliest.
-  const auto to_new = [&](const Vector& point, float near, std::size_t first) {
-    if (!(dot(point, point) >= 0)) return;  // it lies nowhere
-    std::size_t face = first;
-    for (std::size_t i = 0; i < faces && near > far; ++i) {
-      const float d = squared_distance_to(point, {}, corner(face), corner(face + 1));
-      near = d < near ? d : near;
-      face = face + 1 < faces ? face + 1 : 0;
+  const auto least_of = [&](const BoundLanes& lanes, float near) {
+    for (std::size_t k = 0; k < some; ++k) near = lanes[k] < near ? lanes[k] : near;
+    return near;
+  };
+  // `near`: a distance that is known. All faces at once tell most often that it is near enough.
+  const auto to_faces = [&](const Vector& point, float near, const Vector& third_at_p,
+                            const Vector& third_at_q) {
+    if (near > far) {
+      BoundLanes bounds;
+      bound_faces(rim.x(), rim.y(), rim.z(), lie, point, third_at_p, third_at_q, bounds.data());
+      near = least_of(bounds, near);
     }
+    for (std::size_t k = 0; k < faces && near > far; ++k) {
+      const float d =
+          squared_distance_to(point, k < faces_at_p ? third_at_p : third_at_q, corner(k), corner(k + 1));
+      near = d < near ? d : near;
+    }
+    return near;
+  };
+  const auto to_new = [&](const Vector& point, float near) {
+    if (!(dot(point, point) >= 0)) return;  // it lies nowhere
+    near = to_faces(point, near, {}, {});
     far = near > far ? near : far;
   };
-  const auto to_old = [&](const Vector& point, float near, std::size_t first) {
+  const auto to_old = [&](const Vector& point, float near) {
     // The faces of the edge lie in the midst.
     for (const std::size_t side : {std::size_t{0}, faces_at_p}) {
       if (!(near > far)) break;
       const float d = squared_distance_to(point, at_p, at_q, corner(side));
       near = d < near ? d : near;
     }
-    std::size_t face = first;
-    for (std::size_t i = 0; i < faces && near > far; ++i) {
-      const float d =
-          squared_distance_to(point, face < faces_at_p ? at_p : at_q, corner(face), corner(face + 1));
-      near = d < near ? d : near;
-      face = face + 1 < faces ? face + 1 : 0;
-    }
+    near = to_faces(point, near, at_p, at_q);
     far = near > far ? near : far;
-  };
-  const auto least_of = [&](const BoundLanes& lanes, float near) {
-    for (std::size_t k = 0; k < some; ++k) near = lanes[k] < near ? lanes[k] : near;
-    return near;
   };
   EndBounds ends;
   bound_ends(rim.x(), rim.y(), rim.z(), lie, ends.p.data(), ends.q.data(), ends.middle.data());
-  to_new(at_p, least_of(ends.p, from_p), 0);
-  to_new(at_q, least_of(ends.q, from_q), faces_at_p);
-  to_new(middle, least_of(ends.middle, dot(middle, middle)), 0);
+  to_new(at_p, least_of(ends.p, from_p));
+  to_new(at_q, least_of(ends.q, from_q));
+  to_new(middle, least_of(ends.middle, dot(middle, middle)));
   if (far > least) return far;  // far enough for now
   SpokeBounds spokes;
   bound_spokes(rim.x(), rim.y(), rim.z(), lie, spokes.before.data(), spokes.after.data());
   // Both have an edge to where their rings meet; of the one, it is the second at this corner.
-  to_new(half(at_p, corner(0)), 0.25f * from_p, 0);
-  to_new(half(at_q, corner(faces_at_p)), 0.25f * from_q, faces_at_p);
+  to_new(half(at_p, corner(0)), 0.25f * from_p);
+  to_new(half(at_q, corner(faces_at_p)), 0.25f * from_q);
   for (std::size_t k = 0; k < faces; ++k) {
     const bool known = k < some;
     if (known && !(spokes.before[k] > far) && !(spokes.after[k] > far)) continue;
@@ -210,8 +235,8 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
     if (!(dot(to, to) >= 0)) continue;  // it lies nowhere
     const Vector& end = k < faces_at_p ? at_p : at_q;
     const float near = 0.25f * dot(end, end);
-    to_new(half(end, to), known ? spokes.before[k] : near, k);
-    to_old(half({}, to), known ? spokes.after[k] : near, k);
+    to_new(half(end, to), known ? spokes.before[k] : near);
+    to_old(half({}, to), known ? spokes.after[k] : near);
   }
   return far;
 }

@@ -54,10 +54,6 @@ struct Lane {
          value(lane.qa, lane.qb, lane.qc, x - lane.d[0], y - lane.d[1], z - lane.d[2]);
 }
 
-}  // namespace
-
-namespace {
-
 /// Some of `count` records of vertices, those from number i on; their numbers are every `stride`-th of `ids`.
 /// The last comes again where there are no more.
 template <std::size_t kSome>
