@@ -330,8 +330,9 @@ void add_bench(CLI::App& app, Program& program) {
       "inverse is\n"
       "the share of its bandwidth.) Times are those of the device, without transfers. Smoothing: one step of "
       "ten in one\n"
-      "submission. Bilateral: sigma_f of four mean edge lengths. Decimation: to a tenth, on one thread of "
-      "the host.\n\n"
+      "submission. Bilateral: sigma_f of four mean edge lengths. Decimation: to a tenth, on the "
+      "host's\n"
+      "threads.\n\n"
       "Example:\n"
       "  vkmesh bench data/dragon/dragon_vrip_res3.ply.gz data/dragon/dragon_vrip.ply.gz --splits 2 --device "
       "cpu");
