@@ -66,8 +66,8 @@ class EdgeCollapses {
       cost_of_distance = share >= kFewAtBoundary ? static_cast<float>(edge_weight / kFarthest2) : 0.0f;
       only_at_boundary = share < kFewLeft;
     }
-    /// A sixteenth of the faces, and a fourth at the boundary, where tips are cut off at next to no cost.
-    static constexpr std::size_t kFewLeft = 16, kFewAtBoundary = 4;
+    /// A 32nd of the faces, and a fourth at the boundary, where tips are cut off at next to no cost.
+    static constexpr std::size_t kFewLeft = 32, kFewAtBoundary = 4;
     /// How far, in roots of the mean square distance that a cost stands for; squared.
     static constexpr double kFarthest2 = 2.25;
   };

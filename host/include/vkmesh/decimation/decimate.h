@@ -267,7 +267,7 @@ using Decimated = BasicDecimated<Vec3>;
 /// these lie in an AddressableHeap, and the cheapest goes first. Ties fall to the order of the input, so the
 /// same input gives the same bytes everywhere.
 ///
-/// Planes do not tell how far points move within them. Once a sixteenth of the faces is left, and at the
+/// Planes do not tell how far points move within them. Once a 32nd of the faces is left, and at the
 /// boundary and locked vertices once a fourth is, a legal collapse of an edge therefore waits, unless
 /// criteria other than the quadrics choose, until the errors that are due allow for the distance between the
 /// faces before and after: at most 1.5 times the root mean square that they stand for. It is measured from
