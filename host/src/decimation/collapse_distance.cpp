@@ -50,17 +50,14 @@ float squared_distance_to(const Vector& x, const Vector& a, const Vector& b, con
   return from(of_b / all, of_c / all);
 }
 
-// What lies where: the new point, and relative to it the ends of the edge and its middle.
+// What lies where: the new point, and relative to it the ends of the edge.
 struct Lie {
-  Vector place, p, q, middle;
+  Vector place, p, q;
   std::int32_t at_p, faces;
 };
 // Of distances, squared, in one lane a face: none is larger than what stands here.
 constexpr std::size_t kMostBounds = 32;
 using BoundLanes = std::array<float, kMostBounds>;
-struct EndBounds {
-  BoundLanes p, q, middle;  // from these to the new face
-};
 struct SpokeBounds {
   BoundLanes before,
       after;  // from the middle of the edge to the second corner to the faces at it on the other side
@@ -83,29 +80,6 @@ struct SpokeBounds {
   t = t < 1 - s ? t : 1 - s;
   const float rx = wx - s * ux - t * vx, ry = wy - s * uy - t * vy, rz = wz - s * uz - t * vz;
   return rx * rx + ry * ry + rz * rz;
-}
-
-VKMESH_CLONES void bound_ends(const float* __restrict cx, const float* __restrict cy,
-                              const float* __restrict cz, const Lie& lie, float* __restrict from_p,
-                              float* __restrict from_q, float* __restrict from_middle) {
-  const float x0 = lie.place[0], x1 = lie.place[1], x2 = lie.place[2];
-  const float p0 = lie.p[0], p1 = lie.p[1], p2 = lie.p[2], q0 = lie.q[0], q1 = lie.q[1], q2 = lie.q[2];
-  const float m0 = lie.middle[0], m1 = lie.middle[1], m2 = lie.middle[2];
-  for (std::int32_t left = lie.faces; left > 0; left -= kBlock) {
-    for (std::int32_t k = 0; k < kBlock; ++k) {  // so many and no others, or g++ 12 does it one by one
-      const float ax = cx[k] - x0, ay = cy[k] - x1, az = cz[k] - x2;
-      const float bx = cx[k + 1] - x0, by = cy[k + 1] - x1, bz = cz[k + 1] - x2;
-      from_p[k] = to_point_of(p0, p1, p2, 0, 0, 0, ax, ay, az, bx, by, bz);
-      from_q[k] = to_point_of(q0, q1, q2, 0, 0, 0, ax, ay, az, bx, by, bz);
-      from_middle[k] = to_point_of(m0, m1, m2, 0, 0, 0, ax, ay, az, bx, by, bz);
-    }
-    cx += kBlock;
-    cy += kBlock;
-    cz += kBlock;
-    from_p += kBlock;
-    from_q += kBlock;
-    from_middle += kBlock;
-  }
 }
 
 VKMESH_CLONES void bound_spokes(const float* __restrict cx, const float* __restrict cy,
@@ -179,21 +153,19 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
   float far = least;
   if (!(from_p > far) && !(from_q > far)) return far;
   const std::size_t some = std::min(faces, kMostBounds);
-  const Lie lie = {
-      {p[0] + x[0], p[1] + x[1], p[2] + x[2]}, at_p, at_q, middle, static_cast<std::int32_t>(faces_at_p),
-      static_cast<std::int32_t>(some)};
+  const Lie lie = {{p[0] + x[0], p[1] + x[1], p[2] + x[2]},
+                   at_p,
+                   at_q,
+                   static_cast<std::int32_t>(faces_at_p),
+                   static_cast<std::int32_t>(some)};
 
-  const auto least_of = [&](const BoundLanes& lanes, float near) {
-    for (std::size_t k = 0; k < some; ++k) near = lanes[k] < near ? lanes[k] : near;
-    return near;
-  };
   // `near`: a distance that is known. All faces at once tell most often that it is near enough.
   const auto to_faces = [&](const Vector& point, float near, const Vector& third_at_p,
                             const Vector& third_at_q) {
     if (near > far) {
       BoundLanes bounds;
       bound_faces(rim.x(), rim.y(), rim.z(), lie, point, third_at_p, third_at_q, bounds.data());
-      near = least_of(bounds, near);
+      for (std::size_t k = 0; k < some; ++k) near = bounds[k] < near ? bounds[k] : near;
     }
     for (std::size_t k = 0; k < faces && near > far; ++k) {
       const float d =
@@ -217,11 +189,9 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
     near = to_faces(point, near, at_p, at_q);
     far = near > far ? near : far;
   };
-  EndBounds ends;
-  bound_ends(rim.x(), rim.y(), rim.z(), lie, ends.p.data(), ends.q.data(), ends.middle.data());
-  to_new(at_p, least_of(ends.p, from_p));
-  to_new(at_q, least_of(ends.q, from_q));
-  to_new(middle, least_of(ends.middle, dot(middle, middle)));
+  to_new(at_p, from_p);
+  to_new(at_q, from_q);
+  to_new(middle, dot(middle, middle));
   if (far > least) return far;  // far enough for now
   SpokeBounds spokes;
   bound_spokes(rim.x(), rim.y(), rim.z(), lie, spokes.before.data(), spokes.after.data());
