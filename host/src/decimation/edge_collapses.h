@@ -15,19 +15,18 @@
 #include <vkmesh/handles.h>
 
 #include "decimation/attribute_quadrics.h"
-#include "decimation/collapse_distance.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_queues.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
 #include "decimation/edge_batch.h"
+#include "decimation/edge_merger.h"
 #include "decimation/edge_rim.h"
-#include "decimation/face_turns.h"
-#include "decimation/four_rows.h"
 #include "decimation/pending_edges.h"
 #include "decimation/placements.h"
 #include "decimation/star.h"
 #include "decimation/territories.h"
+#include "decimation/vertex_sweep.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -72,7 +71,7 @@ class EdgeCollapses {
     static constexpr double kFarthest2 = 2.25;
   };
 
-  explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
+  explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices), merger_(mesh) {}
 
   void work_on(Share& share) { share_ = &share; }
 
@@ -131,6 +130,10 @@ class EdgeCollapses {
     forget_touched();
   }
 
+  /// Before anything is queued; see VertexSweep.
+  [[nodiscard]] float cost_of_share(double share) { return VertexSweep(mesh_, merger_).cost_of_share(share); }
+  void sweep(float most) { VertexSweep(mesh_, merger_).run(share_->state, share_->territory, most); }
+
   /// Takes over what another has handed on.
   void take_over(Share& other) {
     for (const std::uint32_t h : other.handed_on) share_->queue.insert_now(h);
@@ -180,6 +183,9 @@ class EdgeCollapses {
   }
 
  private:
+  using Merger = EdgeMerger<kAttributes>;
+  using Merge = typename Merger::Merge;
+
   static constexpr std::size_t kFirstFaces = 1 << 12;
   // Edges of so many faces, and from where to where they go.
   struct First {
@@ -228,19 +234,12 @@ class EdgeCollapses {
       for (std::size_t i = 0; i < edges.size(); ++i) {
         const CollapseVertex &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
         take_star(star, mesh_, edges[i],
-                  place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
+                  Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
         ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, star);
       }
     } else {
       std::copy_n(batch.cost.begin(), edges.size(), ranks);
     }
-  }
-
-  /// Of the kept vertex.
-  [[nodiscard]] static std::array<float, 3> place_of(const CollapseVertex& p, const CollapseVertex& q,
-                                                     std::int32_t end, const std::array<float, 3>& x) {
-    if (end != 0) return end == 1 ? p.position : q.position;
-    return {p.position[0] + x[0], p.position[1] + x[1], p.position[2] + x[2]};
   }
 
   using Pending = PendingEdges<Queue::kBatch>;
@@ -346,31 +345,6 @@ class EdgeCollapses {
     return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
   }
 
-  /// The neighbours of p but q and those of q but p, counter-clockwise, and the half-edges from p and q to
-  /// them. What follows the neighbours up to a multiple of WalkedRing::kMost is there, too.
-  using Ring = std::span<const std::uint32_t>;
-  struct Rings {
-    Ring p, q, from_p, from_q;
-  };
-
-  /// A ring of any size.
-  struct LongRing {
-    std::vector<std::uint32_t> vertices, edges;
-    std::size_t size = 0;
-
-    // Of the origin of h, from beyond its target.
-    void collect(const CollapseMesh& mesh, std::uint32_t h) {
-      vertices.clear();
-      edges.clear();
-      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out)) {
-        vertices.push_back(mesh.target(out));
-        edges.push_back(out);
-      }
-      size = vertices.size();
-      vertices.resize((size + WalkedRing::kMost - 1) / WalkedRing::kMost * WalkedRing::kMost);
-    }
-  };
-
   void attempt(const Pending& b, std::size_t i) {
     const Due& due = b.due[i];
     const std::uint32_t h = due.half_edge;
@@ -380,7 +354,7 @@ class EdgeCollapses {
       share_->queue.insert_now(h);
       return;
     }
-    Rings rings;
+    EdgeRings rings;
     const Legality legality = judge(b, i, p, q, rings);
     if (legality == Legality::kLegal) {
       if (!Placement::kByCriteria && watches_distance() && is_put_off(due, p, q)) return;
@@ -397,14 +371,13 @@ class EdgeCollapses {
   /// Of the edge whose rings these are.
   [[nodiscard]] bool watches_distance() const {
     return share_->cost_of_distance > 0 &&
-           (!share_->only_at_boundary || (ring_flags_ & CollapseVertex::kLocked) != 0);
+           (!share_->only_at_boundary || (merger_.flags_around() & CollapseVertex::kLocked) != 0);
   }
   /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
   /// collapse waits until the costs that are due allow for the distance between the faces before and after.
   [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
     const float allowed = std::max(due.cost, share_->queue.level()) / share_->cost_of_distance;
-    const float distance2 =
-        squared_distance_of_collapse(rim_, vertices_[p].position, vertices_[q].position, due.x, allowed);
+    const float distance2 = merger_.squared_distance(due, p, q, allowed);
     if (!(distance2 > allowed)) return false;
     const float cost = distance2 * share_->cost_of_distance;
     if (share_->queue.is_due(due.half_edge, cost)) return false;
@@ -417,31 +390,31 @@ class EdgeCollapses {
     Pending& alone = *pending_[0];
     alone.due[0] = due_of(0, h);
     alone.walked[0].size = WalkedRing::kTooLong;
-    Rings rings;
+    EdgeRings rings;
     return judge(alone, 0, mesh_.origin(h), mesh_.target(h), rings);
   }
 
   /// Sets `rings` when it comes to that.
   [[nodiscard]] Legality judge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
-                               Rings& rings) {
+                               EdgeRings& rings) {
     const Due& due = b.due[i];
     if (due.end == 3) return Legality::kLocked;
     if constexpr (kAttributes)
       if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
-    if (exceeds_error(p, q, geometric_cost(p, q, due))) return Legality::kError;
+    if (merger_.exceeds_error(share_->state, due, p, q)) return Legality::kError;
     rings = rings_of(b, i);
-    if (!link_condition(rings)) return Legality::kLink;
-    if (folds_over(rim_, vertices_[p].position, vertices_[q].position, due.x,
-                   share_->state.limits.cos_deviation))
-      return Legality::kFoldOver;
+    if (const Legality shape = merger_.judge(due, p, q, rings, share_->state.limits.cos_deviation);
+        shape != Legality::kLegal)
+      return shape;
     return share_->state.criteria == nullptr || !share_->state.criteria->bounds() ||
                    meets_criteria(due, p, q, rings)
                ? Legality::kLegal
                : Legality::kCriterion;
   }
 
-  [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q, const Rings& rings) {
-    take_star(star_, mesh_, due.half_edge, place_of(vertices_[p], vertices_[q], due.end, due.x));
+  [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q,
+                                    const EdgeRings& rings) {
+    take_star(star_, mesh_, due.half_edge, Merger::place_of(vertices_[p], vertices_[q], due.end, due.x));
     const std::size_t at_p = rings.p.size() + 1, at_q = rings.q.size() + 1;
     star_.edges_before =
         std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
@@ -449,125 +422,61 @@ class EdgeCollapses {
     return share_->state.criteria->allow(star_);
   }
 
-  /// Of a collapse: its whole cost, but for what attributes have of it.
-  [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const Due& due) const {
-    if constexpr (kAttributes) return share_->state.attributes->geometric_cost(p, q, due.x);
-    return due.cost;
-  }
-  [[nodiscard]] bool exceeds_error(std::uint32_t p, std::uint32_t q, float cost) const {
-    const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
-    return static_cast<double>(cost) > share_->state.limits.error2 * weight;
-  }
+  /// A ring of any size.
+  struct LongRing {
+    std::vector<std::uint32_t> vertices, edges;
+    std::size_t size = 0;
 
-  /// The rings that were walked, unless a collapse of this batch was near; their vertices are the corners of
-  /// `rim_`, and their flags `ring_flags_`.
-  Rings rings_of(const Pending& b, std::size_t i) {
+    // Of the origin of h, from beyond its target.
+    void collect(const CollapseMesh& mesh, std::uint32_t h) {
+      vertices.clear();
+      edges.clear();
+      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out)) {
+        vertices.push_back(mesh.target(out));
+        edges.push_back(out);
+      }
+      size = vertices.size();
+      vertices.resize((size + EdgeRim::kBlock - 1) / EdgeRim::kBlock * EdgeRim::kBlock);
+    }
+  };
+
+  /// The rings that were walked, unless a collapse of this batch was near. The merger has looked around.
+  EdgeRings rings_of(const Pending& b, std::size_t i) {
+    using Ring = EdgeRings::Ring;
     const WalkedRing &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
     if (at_p.is_whole() && at_q.is_whole()) {
-      const Rings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size),
-                        Ring(at_p.edge).first(at_p.size), Ring(at_q.edge).first(at_q.size)};
-      ring_flags_ = rim_.set(vertices_, rings.p, rings.q);
-      if ((ring_flags_ & CollapseVertex::kTouched) == 0) return rings;
+      const EdgeRings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size),
+                            Ring(at_p.edge).first(at_p.size), Ring(at_q.edge).first(at_q.size)};
+      if ((merger_.look_around(rings) & CollapseVertex::kTouched) == 0) return rings;
     }
     const std::uint32_t h = b.due[i].half_edge;
     ring_p_.collect(mesh_, h);
     ring_q_.collect(mesh_, mesh_.twin(h));
-    const Rings rings{Ring(ring_p_.vertices).first(ring_p_.size), Ring(ring_q_.vertices).first(ring_q_.size),
-                      ring_p_.edges, ring_q_.edges};
-    ring_flags_ = rim_.set(vertices_, rings.p, rings.q);
+    const EdgeRings rings{Ring(ring_p_.vertices).first(ring_p_.size),
+                          Ring(ring_q_.vertices).first(ring_q_.size), ring_p_.edges, ring_q_.edges};
+    merger_.look_around(rings);
     return rings;
   }
 
-  /// p and q share two neighbours, those across the edge's faces, and the four are no tetrahedron. Each ring
-  /// starts with one of the two and ends with the other. No two edges join the same vertices.
-  [[nodiscard]] bool link_condition(const Rings& rings) {
-    if (rings.p.front() == rings.p.back()) return false;
-    if (rings.p.size() == 2 && rings.q.size() == 2) return false;
-    // The usual number of vertices at once. Those beyond the inner ones, whatever they are, are seldom the
-    // same.
-    if (std::max(rings.p.size(), rings.q.size()) <= 8 + 2 &&
-        !any_equal(rings.p.data() + 1, rings.q.data() + 1))
-      return true;
-    sorted_.assign(rings.p.begin() + 1, rings.p.end() - 1);
-    std::sort(sorted_.begin(), sorted_.end());
-    return std::none_of(rings.q.begin() + 1, rings.q.end() - 1, [&](std::uint32_t v) {
-      return std::binary_search(sorted_.begin(), sorted_.end(), v);
-    });
-  }
-
-  void collapse(const Due& due, std::uint32_t p, std::uint32_t q, const Rings& rings) {
-    std::uint32_t h = due.half_edge;
-    CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
-    const std::array<float, 3> place = place_of(vp, vq, due.end, due.x);
-    // Which of the two goes: what was chosen; else that of fewer neighbours, which is less work.
-    const std::size_t at_p = rings.p.size(), at_q = rings.q.size();
-    const bool is_first =
-        (vp.source & CollapseVertex::kSourceMask) < (vq.source & CollapseVertex::kSourceMask);
-    bool keep_p = (at_p > at_q) | ((at_p == at_q) & is_first);
-    if (due.end != 0) keep_p = due.end == 1;
-    const float geometric = geometric_cost(p, q, due);
-    if constexpr (kAttributes) {
-      const Wedges& wedges = share_->state.attributes->wedges();
-      if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
-    }
-    // With no jump, which nothing could foretell.
-    const std::uint32_t if_p = 0u - static_cast<std::uint32_t>(keep_p), q_now = q ^ ((p ^ q) & if_p);
-    h ^= (h ^ mesh_.twin(h)) & if_p;
-    CollapseVertex &kept = vertices_[q_now], &gone = vertices_[p ^ q ^ q_now];
-
+  void collapse(const Due& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings) {
+    DecimationState& state = share_->state;
+    const Merge merge = merger_.plan(state, due, p, q, rings);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) {
-      collect_moved(h);
-      price_moved(gone, kept, due.cost);
+      collect_moved(merge.half_edge);
+      price_moved(vertices_[merge.gone], vertices_[merge.kept], due.cost);
     }
-    std::array<float, 3> dk, dg;
-    for (std::size_t k = 0; k < 3; ++k) {
-      dk[k] = place[k] - kept.position[k];
-      dg[k] = place[k] - gone.position[k];
-    }
-    kept.shift(dk);
-    gone.shift(dg);
-    kept.add_quadric(gone);
-    kept.weight += gone.weight;
-    if constexpr (kAttributes) {
-      share_->state.attributes->collapse(h, dg, dk);
-      const double rest = static_cast<double>(due.cost) - static_cast<double>(geometric);
-      if (const float weight = share_->state.attributes->weight(q_now); weight > 0)
-        share_->state.outcome.attribute_error2 =
-            std::max(share_->state.outcome.attribute_error2, rest / static_cast<double>(weight));
-    }
-    if (place != kept.position) kept.source |= CollapseVertex::kMoved;
-    kept.position = place;
-    kept.source |= CollapseVertex::kTouched | (gone.source & CollapseVertex::kHasParked);
-    gone.source |= CollapseVertex::kTouched;
-    touched_.push_back(q_now);
-
-    const std::uint32_t t = mesh_.twin(h);
-    const CollapseMesh::Face &one = mesh_.face(h), &other = mesh_.face(t);
-    if (share_->state.keep_events)
-      share_->state.outcome.events.push_back({kept.source & CollapseVertex::kSourceMask,
-                                              gone.source & CollapseVertex::kSourceMask,
-                                              place,
-                                              kept.has(CollapseVertex::kMoved),
-                                              {one.source, other.source},
-                                              share_->queue.bucket()});
-    if (share_->state.criteria != nullptr && share_->state.criteria->bounds())
-      share_->state.criteria->keep(star_);
-    erase_queued(h);
-    erase_queued(t);
-    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, keep_p ? rings.from_q : rings.from_p);
-    share_->state.faces -= collapsed.faces;
-    --share_->state.vertices;
-    ++share_->state.outcome.collapses;
-    if (kept.weight > 0)
-      share_->state.outcome.error2 = std::max(
-          share_->state.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
-    if (share_->territory.is_seam())
-      share_->territory.merge(mesh_, keep_p ? q : p, q_now, keep_p ? rings.q : rings.p);
+    if (state.criteria != nullptr && state.criteria->bounds()) state.criteria->keep(star_);
+    erase_queued(merge.half_edge);
+    erase_queued(mesh_.twin(merge.half_edge));
+    const CollapseMesh::Collapsed collapsed = merger_.carry_out(state, due, merge, share_->queue.bucket());
+    touched_.push_back(merge.kept);
+    if (share_->territory.is_seam()) share_->territory.merge(mesh_, merge.gone, merge.kept, merge.ring);
     for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
-    if constexpr (Placement::kMayFall == MayFall::kAll) refresh(q_now, rings.p.size() + rings.q.size() - 2);
-    if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(q_now);
+    if constexpr (Placement::kMayFall == MayFall::kAll)
+      refresh(merge.kept, rings.p.size() + rings.q.size() - 2);
+    if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(merge.kept);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) put_moved();
-    revive(q_now, rings);
+    revive(merge.kept, rings);
   }
 
   // The half-edges of a face that goes.
@@ -693,9 +602,9 @@ class EdgeCollapses {
   }
 
   // Parked edges near v may have become legal.
-  void revive(std::uint32_t v, const Rings& rings) {
-    if ((ring_flags_ & CollapseVertex::kHasParked) != 0)
-      for (const Ring& ring : {rings.p, rings.q})
+  void revive(std::uint32_t v, const EdgeRings& rings) {
+    if ((merger_.flags_around() & CollapseVertex::kHasParked) != 0)
+      for (const EdgeRings::Ring& ring : {rings.p, rings.q})
         for (const std::uint32_t r : ring)
           if (vertices_[r].has(CollapseVertex::kHasParked)) {
             if (!share_->territory.is_part() || share_->territory.holds(r))
@@ -722,6 +631,7 @@ class EdgeCollapses {
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
   Share* share_ = nullptr;
+  Merger merger_;
   EdgeBatch batch_;
   EdgeBatch::Lanes ranks_;
   Star star_;
@@ -731,11 +641,9 @@ class EdgeCollapses {
   // Edges to be queued when the batch is done.
   std::array<std::uint32_t, 2 * Queue::kBatch + 2> again_;
   std::size_t again_count_ = 0;
-  std::vector<std::uint32_t> before_, touched_, sorted_;
+  std::vector<std::uint32_t> before_, touched_;
   LongRing ring_p_, ring_q_;
   std::vector<Moved> moved_;
-  EdgeRim rim_;
-  std::uint32_t ring_flags_ = 0;
 };
 
 }  // namespace vkmesh::detail

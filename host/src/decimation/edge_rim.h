@@ -22,10 +22,17 @@ class EdgeRim {
   /// So many faces are looked at at a time; whole blocks can be read.
   static constexpr std::size_t kBlock = 16;
 
+  /// What is known of the vertices around.
+  struct Around {
+    std::uint32_t flags;  // of all
+    /// Whether one of the first eight of p's, both ends left out, is among the first eight of q's or what
+    /// follows a shorter ring.
+    bool may_share;
+  };
   /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the
-  /// other ends, and can be read up to a multiple of kBlock. Returns the flags of all these vertices.
-  std::uint32_t set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
-                    std::span<const std::uint32_t> around_q);
+  /// other ends, and can be read up to a multiple of kBlock.
+  Around set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
+             std::span<const std::uint32_t> around_q);
 
   /// Those at p come first.
   [[nodiscard]] std::size_t faces_at_p() const { return at_p_; }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -52,6 +53,8 @@ class PartedCollapses {
       rest_->queue.start();
       return;
     }
+    if constexpr (!Queue::kExact && !kAttributes)
+      if (is_far()) sweep();
     const auto mark = [&](CollapseMesh::Face& face) { return mark_seam(labels_, face); };
     for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
       if (CollapseMesh::Face& ghost = mesh.face(static_cast<std::uint32_t>(g)); ghost.alive()) mark(ghost);
@@ -99,13 +102,13 @@ class PartedCollapses {
       limits.faces = limits.vertices = kRest;
     }
 
-    void run(Worker& worker, std::size_t most_faces, std::size_t most_vertices, std::uint32_t last) {
+    /// Takes away so many.
+    Share& start(std::size_t most_faces, std::size_t most_vertices) {
       faces = most_faces;
       vertices = most_vertices;
       state.faces = kRest + faces;
       state.vertices = kRest + vertices;
-      worker.work_on(share);
-      worker.run(last);
+      return share;
     }
 
     void report_to(DecimationState& all) {
@@ -131,29 +134,49 @@ class PartedCollapses {
     return worker;
   }
 
-  bool round() {
-    std::uint32_t last = rest_->queue.first();
-    for (const auto& part : parts_) last = std::min(last, part->share.queue.first());
-    if (last == MonotoneQueue::kNone) return false;
-    last += (is_near() ? kNear : kFar) - 1;
-    // So few that together they cannot go beyond the limits.
+  /// All parts, each by a worker. Together they do not go beyond the limits.
+  template <class Work>
+  void side_by_side(Work&& work) {
     const std::size_t divisor = 2 * parts_.size(), faces = (state_.faces - state_.limits.faces) / divisor,
                       vertices = (state_.vertices - state_.limits.vertices) / divisor;
-    for (const auto& part : parts_) part->share.watch(state_);
     // Those with most to do first, or threads would wait for the last of them.
     std::vector<Part*> by_work;
     for (const auto& part : parts_) by_work.push_back(part.get());
     std::ranges::stable_sort(by_work, std::ranges::greater(), &Part::collapses);
     std::atomic<std::size_t> next = 0;
     parallel_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (; begin < end; ++begin) by_work[next++]->run(workers_.local(), faces, vertices, last);
+      for (; begin < end; ++begin) {
+        Worker& worker = workers_.local();
+        worker.work_on(by_work[next++]->start(faces, vertices));
+        work(worker);
+      }
     });
-    Worker& worker = mine();
+    for (const auto& part : parts_) part->report_to(state_);
+  }
+
+  /// Whether so little will be left, and no error is promised, that the order of what goes first hardly
+  /// matters. A history tells that order.
+  [[nodiscard]] bool is_far() const {
+    constexpr std::size_t kFew = 8;
+    return !state_.keep_events && state_.limits.error2 == std::numeric_limits<double>::infinity() &&
+           state_.faces >= kFew * state_.limits.faces && state_.vertices >= kFew * state_.limits.vertices;
+  }
+  /// The costliest tenth of the vertices is left to the queue, and what costs as much by then.
+  void sweep() {
+    const float most = mine().cost_of_share(0.9);
+    side_by_side([most](Worker& worker) { worker.sweep(most); });
+  }
+
+  bool round() {
+    std::uint32_t last = rest_->queue.first();
+    for (const auto& part : parts_) last = std::min(last, part->share.queue.first());
+    if (last == MonotoneQueue::kNone) return false;
+    last += (is_near() ? kNear : kFar) - 1;
+    for (const auto& part : parts_) part->share.watch(state_);
     const auto done = static_cast<std::ptrdiff_t>(state_.outcome.events.size());
-    for (const auto& part : parts_) {
-      part->report_to(state_);
-      worker.take_over(part->share);
-    }
+    side_by_side([last](Worker& worker) { worker.run(last); });
+    Worker& worker = mine();
+    for (const auto& part : parts_) worker.take_over(part->share);
     // A history that stops anywhere has done as much in each part.
     std::ranges::stable_sort(state_.outcome.events.begin() + done, state_.outcome.events.end(), {},
                              &Event::bucket);

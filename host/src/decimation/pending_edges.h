@@ -10,16 +10,9 @@
 
 #include "caches.h"
 #include "decimation/collapse_mesh.h"
+#include "decimation/edge_merger.h"
 
 namespace vkmesh::detail {
-
-/// An edge that is due, what it costs, and where its point goes; see EdgeBatch.
-struct DueEdge {
-  std::uint32_t half_edge;
-  float cost;
-  std::int32_t end;
-  std::array<float, 3> x;
-};
 
 /// The neighbours of a vertex but one, counter-clockwise, and the half-edges from it to them.
 struct WalkedRing {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,24 @@ class Territory {
   [[nodiscard]] bool is_part() const { return part_ != kSeam; }
   /// Of a part.
   [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (part_ | kInner); }
+
+  /// Of a part: calls f(v) in order for all that it holds below `end`. O(end), eight at a time.
+  template <class F>
+  void for_each(std::uint32_t end, F&& f) const {
+    constexpr std::uint64_t kOnes = 0x0101010101010101, kHigh = 0x80 * kOnes;
+    const std::uint64_t all = kOnes * (part_ | kInner);
+    std::uint32_t v = 0;
+    for (; v + 8 <= end; v += 8) {
+      std::uint64_t eight;
+      std::memcpy(&eight, labels_ + v, sizeof eight);
+      eight ^= all;
+      if (((eight - kOnes) & ~eight & kHigh) == 0) continue;  // none of the bytes is 0
+      for (std::uint32_t i = v; i < v + 8; ++i)
+        if (holds(i)) f(i);
+    }
+    for (; v < end; ++v)
+      if (holds(v)) f(v);
+  }
 
   [[nodiscard]] bool is_seam() const { return labels_ != nullptr && !is_part(); }
   /// Of the seam: a vertex has absorbed another, which had this ring.

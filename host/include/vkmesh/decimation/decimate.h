@@ -141,9 +141,11 @@ struct DecimateOptions {
   /// the positions, or as a share of the whole mesh's diagonal. The component of most faces always stays.
   /// Default: none goes. Ratios remain those of all faces.
   std::optional<double> prune_size, prune_relative_size;
-  /// Fill Decimated::history and Decimated::changes. Default off: it takes 28 bytes a collapse; 32 more for
-  /// each face that vertex removals make, about four each time; and with attributes 12 for each wedge that
-  /// collapses change, one or two each time, and 4 for each component.
+  /// Fill Decimated::history and Decimated::changes. The cheapest edges go first then even where the target
+  /// is far and a sweep would be faster (docs/decimation.md), so that the result differs a little. Default
+  /// off: it takes 28 bytes a collapse; 32 more for each face that vertex removals make, about four each
+  /// time; and with attributes 12 for each wedge that collapses change, one or two each time, and 4 for each
+  /// component.
   bool keep_history = false;
 };
 

@@ -1,0 +1,180 @@
+// What is judged and done when an edge collapses, whoever chooses it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <vkmesh/decimation/decimate.h>
+
+#include "decimation/attribute_quadrics.h"
+#include "decimation/collapse_distance.h"
+#include "decimation/collapse_mesh.h"
+#include "decimation/driver.h"
+#include "decimation/edge_rim.h"
+#include "decimation/face_turns.h"
+
+namespace vkmesh::detail {
+
+/// An edge that is due, what it costs, and where its point goes; see EdgeBatch.
+struct DueEdge {
+  std::uint32_t half_edge;
+  float cost;
+  std::int32_t end;
+  std::array<float, 3> x;
+};
+
+/// The neighbours of p but q and those of q but p, counter-clockwise, and the half-edges from p and q to
+/// them. What follows the neighbours up to a multiple of EdgeRim::kBlock is there, too.
+struct EdgeRings {
+  using Ring = std::span<const std::uint32_t>;
+  Ring p, q, from_p, from_q;
+};
+
+/// Edges of a mesh, with attributes or without. It knows the surroundings of one edge at a time.
+template <bool kAttributes>
+class EdgeMerger {
+ public:
+  explicit EdgeMerger(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
+
+  /// Where the kept vertex comes to lie.
+  [[nodiscard]] static std::array<float, 3> place_of(const CollapseVertex& p, const CollapseVertex& q,
+                                                     std::int32_t end, const std::array<float, 3>& x) {
+    if (end != 0) return end == 1 ? p.position : q.position;
+    return {p.position[0] + x[0], p.position[1] + x[1], p.position[2] + x[2]};
+  }
+
+  [[nodiscard]] bool exceeds_error(const DecimationState& state, const DueEdge& due, std::uint32_t p,
+                                   std::uint32_t q) const {
+    const double weight = static_cast<double>(vertices_[p].weight) + static_cast<double>(vertices_[q].weight);
+    return static_cast<double>(geometric_cost(state, due, p, q)) > state.limits.error2 * weight;
+  }
+
+  /// Makes these the surroundings. Returns the flags of all their vertices.
+  std::uint32_t look_around(const EdgeRings& rings) {
+    around_ = rim_.set(vertices_, rings.p, rings.q);
+    return around_.flags;
+  }
+  [[nodiscard]] std::uint32_t flags_around() const { return around_.flags; }
+
+  /// Whether the surface stays what it is, and no face turns by more than the angle of this cosine: of the
+  /// edge around which it was looked.
+  [[nodiscard]] Legality judge(const DueEdge& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings,
+                               float cos_deviation) {
+    if (!link_condition(rings)) return Legality::kLink;
+    return folds_over(rim_, vertices_[p].position, vertices_[q].position, due.x, cos_deviation)
+               ? Legality::kFoldOver
+               : Legality::kLegal;
+  }
+  /// See squared_distance_of_collapse; of the same edge.
+  [[nodiscard]] float squared_distance(const DueEdge& due, std::uint32_t p, std::uint32_t q,
+                                       float allowed) const {
+    return squared_distance_of_collapse(rim_, vertices_[p].position, vertices_[q].position, due.x, allowed);
+  }
+
+  /// Which of two vertices goes, the half-edge from it to the other, its other neighbours and the half-edges
+  /// to them.
+  struct Merge {
+    std::uint32_t half_edge, gone, kept;
+    EdgeRings::Ring ring, others;
+  };
+  /// What was chosen; else that of fewer neighbours goes, which is less work.
+  [[nodiscard]] Merge plan(const DecimationState& state, const DueEdge& due, std::uint32_t p, std::uint32_t q,
+                           const EdgeRings& rings) const {
+    const std::size_t at_p = rings.p.size(), at_q = rings.q.size();
+    const bool is_first = (vertices_[p].source & CollapseVertex::kSourceMask) <
+                          (vertices_[q].source & CollapseVertex::kSourceMask);
+    bool keep_p = (at_p > at_q) | ((at_p == at_q) & is_first);
+    if (due.end != 0) keep_p = due.end == 1;
+    if constexpr (kAttributes) {
+      const Wedges& wedges = state.attributes->wedges();
+      if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
+    }
+    // With no jump, which nothing could foretell.
+    const std::uint32_t if_p = 0u - static_cast<std::uint32_t>(keep_p), kept = q ^ ((p ^ q) & if_p);
+    const std::uint32_t h = due.half_edge ^ ((due.half_edge ^ mesh_.twin(due.half_edge)) & if_p);
+    return {h, p ^ q ^ kept, kept, keep_p ? rings.q : rings.p, keep_p ? rings.from_q : rings.from_p};
+  }
+
+  /// Merges the quadrics, and the vertices. Both are touched then. `bucket` is for the history.
+  CollapseMesh::Collapsed carry_out(DecimationState& state, const DueEdge& due, const Merge& merge,
+                                    std::uint32_t bucket) {
+    const std::uint32_t h = merge.half_edge;
+    CollapseVertex &kept = vertices_[merge.kept], &gone = vertices_[merge.gone];
+    const bool from_p = h == due.half_edge;
+    const std::uint32_t p = from_p ? merge.gone : merge.kept, q = from_p ? merge.kept : merge.gone;
+    const std::array<float, 3> place = place_of(vertices_[p], vertices_[q], due.end, due.x);
+    const float geometric = geometric_cost(state, due, p, q);
+    std::array<float, 3> dk, dg;
+    for (std::size_t k = 0; k < 3; ++k) {
+      dk[k] = place[k] - kept.position[k];
+      dg[k] = place[k] - gone.position[k];
+    }
+    const bool moves = place != kept.position;
+    if (moves) {
+      kept.shift(dk);
+      kept.position = place;
+      kept.source |= CollapseVertex::kMoved;
+    }
+    gone.shift(dg);
+    kept.add_quadric(gone);
+    kept.weight += gone.weight;
+    if constexpr (kAttributes) {
+      state.attributes->collapse(h, dg, dk);
+      const double rest = static_cast<double>(due.cost) - static_cast<double>(geometric);
+      if (const float weight = state.attributes->weight(merge.kept); weight > 0)
+        state.outcome.attribute_error2 =
+            std::max(state.outcome.attribute_error2, rest / static_cast<double>(weight));
+    }
+    kept.source |= CollapseVertex::kTouched | (gone.source & CollapseVertex::kHasParked);
+    gone.source |= CollapseVertex::kTouched;
+    if (state.keep_events)
+      state.outcome.events.push_back({kept.source & CollapseVertex::kSourceMask,
+                                      gone.source & CollapseVertex::kSourceMask,
+                                      place,
+                                      kept.has(CollapseVertex::kMoved),
+                                      {mesh_.face(h).source, mesh_.face(mesh_.twin(h)).source},
+                                      bucket});
+    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, merge.others);
+    state.faces -= collapsed.faces;
+    --state.vertices;
+    ++state.outcome.collapses;
+    if (kept.weight > 0)
+      state.outcome.error2 =
+          std::max(state.outcome.error2, static_cast<double>(geometric) / static_cast<double>(kept.weight));
+    return collapsed;
+  }
+
+ private:
+  /// Of a collapse: its whole cost, but for what attributes have of it.
+  [[nodiscard]] float geometric_cost(const DecimationState& state, const DueEdge& due, std::uint32_t p,
+                                     std::uint32_t q) const {
+    if constexpr (kAttributes) return state.attributes->geometric_cost(p, q, due.x);
+    return due.cost;
+  }
+
+  /// p and q share two neighbours, those across the edge's faces, and the four are no tetrahedron. Each ring
+  /// starts with one of the two and ends with the other. No two edges join the same vertices.
+  [[nodiscard]] bool link_condition(const EdgeRings& rings) {
+    if (rings.p.front() == rings.p.back()) return false;
+    if (rings.p.size() == 2 && rings.q.size() == 2) return false;
+    // The usual number of vertices was looked at before.
+    if (std::max(rings.p.size(), rings.q.size()) <= 8 + 2 && !around_.may_share) return true;
+    sorted_.assign(rings.p.begin() + 1, rings.p.end() - 1);
+    std::sort(sorted_.begin(), sorted_.end());
+    return std::none_of(rings.q.begin() + 1, rings.q.end() - 1, [&](std::uint32_t v) {
+      return std::binary_search(sorted_.begin(), sorted_.end(), v);
+    });
+  }
+
+  CollapseMesh& mesh_;
+  LargeArray<CollapseVertex>& vertices_;
+  EdgeRim rim_;
+  EdgeRim::Around around_{};
+  std::vector<std::uint32_t> sorted_;
+};
+
+}  // namespace vkmesh::detail

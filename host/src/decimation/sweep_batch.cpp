@@ -1,0 +1,90 @@
+#include "decimation/sweep_batch.h"
+
+#include <algorithm>
+
+#include "decimation/four_rows.h"
+#include "passes/clones.h"
+
+namespace vkmesh::detail {
+namespace {
+
+constexpr std::uint32_t kMost = SweepBatch::kMost;
+
+// The first words of the neighbours' records, and what their quadrics say at their own places.
+#if defined(VKMESH_HAS_CLONES)
+__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    SweepBatch::Around& around = batch.around[i];
+    std::array<const void*, 8> rows;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k]];
+      rows[k] = &neighbour;
+      around.c[k] = neighbour.c;
+    }
+    turn_eight(rows, {around.words[0].data(), around.words[1].data(), around.words[2].data(),
+                      around.words[3].data()});
+  }
+}
+
+__attribute__((target("default")))
+#endif
+void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    SweepBatch::Around& around = batch.around[i];
+    for (std::size_t k = 0; k < SweepBatch::kMost; k += 4) {
+      std::array<const void*, 4> rows;
+      for (std::size_t j = 0; j < 4; ++j) {
+        const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k + j]];
+        rows[j] = &neighbour;
+        around.c[k + j] = neighbour.c;
+      }
+      turn_four(rows, {&around.words[0][k], &around.words[1][k], &around.words[2][k], &around.words[3][k]});
+    }
+  }
+}
+
+VKMESH_CLONES void find_best(const CollapseVertex* vertices, std::uint32_t apex, SweepBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const CollapseVertex& p = vertices[batch.vertex[i]];
+    const SweepBatch::Ring& ring = batch.ring[i];
+    const SweepBatch::Around& around = batch.around[i];
+    const auto& a = p.a;
+    const auto& b = p.b;
+    std::uint32_t least = SweepBatch::kNone, at_apex = 0, size = kMost;
+    for (std::uint32_t k = 0; k < kMost; ++k) {
+      const float x = around.words[0][k] - p.position[0], y = around.words[1][k] - p.position[1],
+                  z = around.words[2][k] - p.position[2];
+      const float ax = a[0] * x + a[1] * y + a[2] * z;
+      const float ay = a[1] * x + a[3] * y + a[4] * z;
+      const float az = a[2] * x + a[4] * y + a[5] * z;
+      const float sum = p.c + x * (ax + 2 * b[0]) + y * (ay + 2 * b[1]) + z * (az + 2 * b[2]);
+      const float cost = (sum > 0 ? sum : 0.0f) + around.c[k];
+      const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMost * kMost + k;
+      least = least < bits ? least : bits;
+      at_apex |= ring.vertex[k] == apex ? 1u : 0u;
+      const std::uint32_t last = ring.edge[k] == p.leading ? k : kMost;
+      size = size < last ? size : last;
+    }
+    batch.size[i] = size < kMost ? size + 1 : 0;
+    batch.best[i] = at_apex != 0 || size == kMost ? SweepBatch::kNone : least;
+  }
+}
+
+}  // namespace
+
+void SweepBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> some) {
+  const CollapseVertex* const vertices = mesh.vertices.data();
+  count = some.size();
+  std::copy(some.begin(), some.end(), vertex.begin());
+  for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[some[i]].leading);
+  gather_neighbours(vertices, *this);
+  find_best(vertices, mesh.apex(), *this);
+  for (std::size_t i = 0; i < count; ++i)
+    for (auto* const words : {&ring[i].vertex, &ring[i].edge}) {
+      std::array<std::uint32_t, kMost> first;
+      std::copy_n(words->begin(), kMost, first.begin());
+      std::copy_n(first.begin(), kMost, words->begin() + size[i]);
+    }
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,277 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <set>
+#include <span>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "decimate_support.h"
+#include "decimation/collapse_order.h"
+#include "decimation/driver.h"
+#include "decimation/edge_merger.h"
+#include "decimation/quadric_sums.h"
+#include "decimation/sweep_batch.h"
+#include "decimation/territories.h"
+#include "decimation/vertex_sweep.h"
+#include "support/shapes.h"
+
+namespace vkmesh {
+namespace {
+
+using detail::CollapseMesh;
+using detail::CollapseVertex;
+using detail::SweepBatch;
+using detail::Territory;
+
+/// Fitted into the cube that parts are cut in.
+CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
+  test::jitter(set, 0.05f, seed);
+  float size = 0;
+  for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (Vec3& p : set.points) p = 0.5f / size * p;
+  CollapseMesh mesh = test::collapse_mesh_of(set);
+  detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+  return mesh;
+}
+
+/// Counter-clockwise.
+std::vector<std::uint32_t> ring_of(const CollapseMesh& mesh, std::uint32_t v) {
+  std::vector<std::uint32_t> ring;
+  std::uint32_t h = mesh.vertices[v].leading;
+  do {
+    h = mesh.around_vertex(h);
+    ring.push_back(mesh.target(h));
+  } while (h != mesh.vertices[v].leading);
+  return ring;
+}
+
+/// Of both quadrics, at q.
+double cost_of(const CollapseVertex& p, const CollapseVertex& q) {
+  std::array<double, 3> x;
+  for (std::size_t k = 0; k < 3; ++k)
+    x[k] = static_cast<double>(q.position[k]) - static_cast<double>(p.position[k]);
+  const std::array<std::array<std::size_t, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+  double sum = p.c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += 2 * static_cast<double>(p.b[i]) * x[i];
+    for (std::size_t j = 0; j < 3; ++j) sum += static_cast<double>(p.a[at[i][j]]) * x[i] * x[j];
+  }
+  return std::max(sum, 0.0) + static_cast<double>(q.c);
+}
+
+/// The same with vertices that are next to each other 16 numbers apart: in one batch.
+IndexedFaceSet spread(const IndexedFaceSet& set) {
+  IndexedFaceSet result = set;
+  const std::size_t n = set.points.size(), rows = n / 16;
+  const auto to = [&](std::size_t v) { return v < 16 * rows ? v % rows * 16 + v / rows : v; };
+  for (std::size_t v = 0; v < n; ++v) result.points[to(v)] = set.points[v];
+  for (std::uint32_t& c : result.corners) c = static_cast<std::uint32_t>(to(c));
+  return result;
+}
+
+/// With vertices of few neighbours and of many.
+std::vector<IndexedFaceSet> shapes() {
+  return {test::icosphere(3), test::torus(30, 16), test::grid(20, 22), test::fine_cube(8)};
+}
+
+Vec3 normal_of(const CollapseMesh& mesh, std::uint32_t f) {
+  const auto at = [&](std::size_t i) {
+    const auto& p = mesh.vertices[mesh.face(4 * f).origin[i]].position;
+    return Vec3(p[0], p[1], p[2]);
+  };
+  return glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0)));
+}
+
+}  // namespace
+
+TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the least cost", "[decimate]") {
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    CollapseMesh mesh = mesh_of(shapes()[seed % 4], seed);
+    std::mt19937 random(seed);
+    // What vertices have taken in is in their quadrics.
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v)
+      mesh.vertices[v].c = 1e-7f * static_cast<float>(random() % 1000);
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t v = seed; v < mesh.apex() && some.size() < SweepBatch::kSize - seed % 3; v += 7)
+      some.push_back(v);
+    SweepBatch batch;
+    batch.set(mesh, some);
+    REQUIRE(batch.count == some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto ring = ring_of(mesh, some[i]);
+      const bool inner = std::ranges::find(ring, mesh.apex()) == ring.end();
+      REQUIRE(batch.has_best(i) == (inner && ring.size() <= SweepBatch::kMost));
+      if (ring.size() > SweepBatch::kMost) continue;
+      REQUIRE(batch.size[i] == ring.size());
+      // It comes again, and can be read on from any neighbour.
+      for (std::size_t k = 0; k < ring.size() + SweepBatch::kMost; ++k) {
+        const std::uint32_t h = batch.ring[i].edge[k];
+        REQUIRE(batch.ring[i].vertex[k] == ring[k % ring.size()]);
+        REQUIRE(mesh.origin(h) == some[i]);
+        REQUIRE(mesh.target(h) == ring[k % ring.size()]);
+      }
+      if (!inner) continue;
+      std::vector<double> costs;
+      for (const std::uint32_t r : ring) costs.push_back(cost_of(mesh.vertices[some[i]], mesh.vertices[r]));
+      const double least = std::ranges::min(costs),
+                   rounding = 1e-6 * static_cast<double>(mesh.vertices[some[i]].weight);
+      CHECK(std::abs(costs[batch.best_of(i)] - least) <= 2e-6 * least + rounding);
+      CHECK(std::abs(static_cast<double>(batch.cost_of(i)) - least) <= 2e-6 * least + rounding);
+    }
+  }
+}
+
+TEST_CASE("a part holds its vertices, each once, in order", "[decimate]") {
+  std::mt19937 random(1);
+  for (std::size_t n = 0; n < 60; ++n) {
+    std::vector<std::uint8_t> labels(n + 9);
+    for (std::uint8_t& label : labels)
+      label = static_cast<std::uint8_t>(random() % 3 | (random() % 8 != 0 ? Territory::kInner : 0));
+    const Territory part(labels, 1);
+    std::vector<std::uint32_t> expected, found;
+    for (std::uint32_t v = 0; v < n; ++v)
+      if (labels[v] == (1 | Territory::kInner)) expected.push_back(v);
+    part.for_each(static_cast<std::uint32_t>(n), [&](std::uint32_t v) { found.push_back(v); });
+    REQUIRE(found == expected);
+  }
+}
+
+/// Connectivity, and that no two edges join the same vertices.
+void check(const CollapseMesh& mesh) {
+  for (std::uint32_t h = 0; h < mesh.half_edge_bound(); ++h) {
+    if (h % 4 == 3 || !mesh.alive(h)) continue;
+    const std::uint32_t t = mesh.twin(h);
+    REQUIRE(mesh.alive(t));
+    REQUIRE(mesh.twin(t) == h);
+    REQUIRE(mesh.origin(t) == mesh.target(h));
+    REQUIRE((mesh.origin(h) == mesh.apex() || mesh.vertices[mesh.origin(h)].alive()));
+  }
+  for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+    if (!mesh.vertices[v].alive()) continue;
+    const auto ring = ring_of(mesh, v);
+    REQUIRE(std::set(ring.begin(), ring.end()).size() == ring.size());
+  }
+}
+
+TEST_CASE("a sweep takes what costs little from its part alone, and leaves the surface what it is",
+          "[decimate]") {
+  for (std::uint32_t seed = 0; seed < 16; ++seed) {
+    const IndexedFaceSet shape = shapes()[seed % 4];
+    CollapseMesh mesh = mesh_of(seed < 8 ? shape : spread(shape), seed);
+    std::vector<std::uint8_t> labels = detail::divide(mesh, 2);
+    for (std::uint32_t v = 5; v < mesh.apex(); v += 31) mesh.vertices[v].source |= CollapseVertex::kLocked;
+    std::vector<CollapseVertex> before;
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v) before.push_back(mesh.vertices[v]);
+    detail::Limits limits;
+    limits.cos_deviation = -1;
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    detail::EdgeMerger<false> merger(mesh);
+    detail::VertexSweep sweep(mesh, merger);
+    const float half = sweep.cost_of_share(0.5);
+    REQUIRE(half < sweep.cost_of_share(1));
+    sweep.run(state, Territory(labels, 1), half);
+    check(mesh);
+
+    std::size_t gone = 0;
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+      const CollapseVertex& vertex = mesh.vertices[v];
+      if (vertex.alive()) {
+        CHECK(!vertex.has(CollapseVertex::kTouched));
+        CHECK(!vertex.has(CollapseVertex::kHasParked));
+        CHECK(vertex.position == before[v].position);
+        if (labels[v] != (1 | Territory::kInner)) CHECK(vertex.weight == before[v].weight);
+        CHECK(vertex.c <= half * 1.001f);
+        continue;
+      }
+      ++gone;
+      CHECK(labels[v] == (1 | Territory::kInner));
+      CHECK(!vertex.has(CollapseVertex::kLocked));
+    }
+    CHECK(8 * gone > static_cast<std::size_t>(std::ranges::count(labels, 1 | Territory::kInner)));
+    CHECK(state.vertices + gone == mesh.apex());
+    CHECK(state.faces + 2 * gone == mesh.face_count());
+    std::size_t faces = 0;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
+    CHECK(faces == state.faces);
+  }
+}
+
+TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
+  const double least = std::cos(std::acos(-1.0) / 6) - 1e-4;
+  std::size_t merged = 0, left = 0;
+  for (std::uint32_t v = 0; v < 300; v += 3) {
+    IndexedFaceSet shape = test::icosphere(3);
+    test::jitter(shape, 0.3f, v);
+    CollapseMesh mesh = mesh_of(shape, v);
+    SweepBatch batch;
+    batch.set(mesh, std::span(&v, 1));
+    if (!batch.has_best(0)) continue;
+    // These two alone.
+    std::vector<std::uint8_t> labels(mesh.apex() + 1, 1);
+    labels[v] = labels[batch.ring[0].vertex[batch.best_of(0)]] = 1 | Territory::kInner;
+    std::vector<Vec3> normals;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) normals.push_back(normal_of(mesh, f));
+    detail::Limits limits;
+    limits.cos_deviation = -1;
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    detail::EdgeMerger<false> merger(mesh);
+    detail::VertexSweep(mesh, merger)
+        .run(state, Territory(labels, 1), std::numeric_limits<float>::infinity());
+    merged += state.vertices < mesh.apex() ? 1 : 0;
+    left += state.vertices == mesh.apex() ? 1 : 0;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+      if (mesh.alive(4 * f)) CHECK(static_cast<double>(glm::dot(normals[f], normal_of(mesh, f))) >= least);
+  }
+  CHECK(merged > 10);
+  CHECK(left > 10);
+}
+
+TEST_CASE("decimation: what is far from its target is swept at first, on any number of threads alike",
+          "[decimate]") {
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
+  test::jitter(mesh, 0.05f, 1);
+  for (const DecimateOptions& way : test::ways()) {
+    if (way.operation == DecimateOperation::kVertexRemoval || way.placement == CollapsePlacement::kMidpoint)
+      continue;  // of one part
+    const auto on = [&](int threads, const DecimateOptions& options) {
+      tbb::task_arena arena(threads);
+      return arena.execute([&] {
+        auto result = detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+        REQUIRE(result);
+        REQUIRE(validate(result->mesh));
+        return std::move(*result);
+      });
+    };
+    const auto same = [](const Decimated& a, const Decimated& b) {
+      return std::ranges::equal(a.mesh.origins(), b.mesh.origins()) && a.positions == b.positions &&
+             a.vertex_map == b.vertex_map && a.collapses == b.collapses && a.error == b.error;
+    };
+    for (const double ratio : {0.0, 0.1, 0.2}) {
+      DecimateOptions options = way;
+      options.target_ratio = ratio;
+      const Decimated one = on(1, options);
+      for (const int threads : {2, 3, 8}) CHECK(same(on(threads, options), one));
+      if (ratio > 0)
+        CHECK(static_cast<double>(one.mesh.face_count()) <= ratio * static_cast<double>(mesh.face_count()));
+      // The order tells in a history, and where an error is promised.
+      options.keep_history = true;
+      const Decimated in_order = on(1, options);
+      CHECK(same(in_order, one) == (ratio > 0.125));
+      options.keep_history = false;
+      options.max_relative_error = 10;
+      CHECK(same(on(1, options), in_order));
+    }
+  }
+}
+
+}  // namespace vkmesh
