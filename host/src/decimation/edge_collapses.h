@@ -131,7 +131,9 @@ class EdgeCollapses {
   }
 
   /// Before anything is queued; see VertexSweep.
-  [[nodiscard]] float cost_of_share(double share) { return VertexSweep(mesh_, merger_).cost_of_share(share); }
+  [[nodiscard]] float cost_of_sweep() {
+    return VertexSweep(mesh_, merger_).cost_of_share(VertexSweep::kShare);
+  }
   void sweep(float most) { VertexSweep(mesh_, merger_).run(share_->state, share_->territory, most); }
 
   /// Takes over what another has handed on.

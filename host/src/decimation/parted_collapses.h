@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -54,7 +53,7 @@ class PartedCollapses {
       return;
     }
     if constexpr (!Queue::kExact && !kAttributes)
-      if (is_far()) sweep();
+      if (VertexSweep::is_worth_while(state_)) sweep();
     const auto mark = [&](CollapseMesh::Face& face) { return mark_seam(labels_, face); };
     for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
       if (CollapseMesh::Face& ghost = mesh.face(static_cast<std::uint32_t>(g)); ghost.alive()) mark(ghost);
@@ -154,16 +153,8 @@ class PartedCollapses {
     for (const auto& part : parts_) part->report_to(state_);
   }
 
-  /// Whether so little will be left, and no error is promised, that the order of what goes first hardly
-  /// matters. A history tells that order.
-  [[nodiscard]] bool is_far() const {
-    constexpr std::size_t kFew = 8;
-    return !state_.keep_events && state_.limits.error2 == std::numeric_limits<double>::infinity() &&
-           state_.faces >= kFew * state_.limits.faces && state_.vertices >= kFew * state_.limits.vertices;
-  }
-  /// The costliest tenth of the vertices is left to the queue, and what costs as much by then.
   void sweep() {
-    const float most = mine().cost_of_share(0.9);
+    const float most = mine().cost_of_sweep();
     side_by_side([most](Worker& worker) { worker.sweep(most); });
   }
 

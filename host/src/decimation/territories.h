@@ -25,16 +25,18 @@ class Territory {
   Territory(std::vector<std::uint8_t>& labels, std::uint8_t part) : labels_(labels.data()), part_(part) {}
 
   [[nodiscard]] bool is_part() const { return part_ != kSeam; }
-  /// Of a part.
-  [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (part_ | kInner); }
+  /// Of a part, or everywhere if there are none.
+  [[nodiscard]] bool holds(std::uint32_t v) const {
+    return labels_ == nullptr || labels_[v] == (part_ | kInner);
+  }
 
-  /// Of a part: calls f(v) in order for all that it holds below `end`. O(end), eight at a time.
+  /// Calls f(v) in order for all that it holds below `end`. O(end), eight at a time.
   template <class F>
   void for_each(std::uint32_t end, F&& f) const {
     constexpr std::uint64_t kOnes = 0x0101010101010101, kHigh = 0x80 * kOnes;
     const std::uint64_t all = kOnes * (part_ | kInner);
     std::uint32_t v = 0;
-    for (; v + 8 <= end; v += 8) {
+    for (; labels_ != nullptr && v + 8 <= end; v += 8) {
       std::uint64_t eight;
       std::memcpy(&eight, labels_ + v, sizeof eight);
       eight ^= all;

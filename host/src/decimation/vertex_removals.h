@@ -19,9 +19,11 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/criteria.h"
 #include "decimation/driver.h"
+#include "decimation/edge_merger.h"
 #include "decimation/four_rows.h"
 #include "decimation/hole.h"
 #include "decimation/star.h"
+#include "decimation/vertex_sweep.h"
 
 namespace vkmesh::detail {
 
@@ -49,6 +51,12 @@ class VertexRemovals {
 
   /// All vertices with their costs.
   void fill() {
+    if constexpr (!Queue::kExact && !kAttributes)
+      if (VertexSweep::is_worth_while(state_)) {
+        EdgeMerger<false> merger(mesh_);
+        VertexSweep sweep(mesh_, merger);
+        sweep.run(state_, Territory(), sweep.cost_of_share(VertexSweep::kShare));
+      }
     std::array<std::uint32_t, kStars> ids;
     std::array<float, kStars> errors;
     std::size_t count = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -23,6 +24,17 @@ namespace vkmesh::detail {
 /// smooth, and those that stay do not move; the collapses that follow place them anew, by all the planes.
 class VertexSweep {
  public:
+  /// Whether a large surface is so far from its target, and no error is promised, that the order of what goes
+  /// first hardly matters. A history tells that order.
+  [[nodiscard]] static bool is_worth_while(const DecimationState& state) {
+    constexpr std::size_t kFew = 8;
+    return state.mesh.face_count() >= 2 * state.part_faces && state.criteria == nullptr &&
+           !state.keep_events && state.limits.error2 == std::numeric_limits<double>::infinity() &&
+           state.faces >= kFew * state.limits.faces && state.vertices >= kFew * state.limits.vertices;
+  }
+  /// The costliest tenth of the vertices is left to the queue, and what costs as much by then.
+  static constexpr double kShare = 0.9;
+
   VertexSweep(CollapseMesh& mesh, EdgeMerger<false>& merger)
       : mesh_(mesh), vertices_(mesh.vertices), merger_(merger) {}
 
@@ -48,7 +60,7 @@ class VertexSweep {
     return *nth;
   }
 
-  /// Sweeps a part. No vertex goes at more than this cost.
+  /// Sweeps a part, or all. No vertex goes at more than this cost.
   void run(DecimationState& state, const Territory& part, float most) {
     std::vector<std::uint32_t> candidates;
     candidates.reserve(kAtOnce);
