@@ -462,8 +462,10 @@ void require_sound(const BasicDecimated<Point>& result, const Input<Point>& inpu
   require_maps(result, input, options);
   require_same_topology(result, input);
   require_locks(result, input, options);
-  require_history(result, input);
-  require_changes(result, input, options);
+  if (options.keep_history) {
+    require_history(result, input);
+    require_changes(result, input, options);
+  }
   require_stop(result, input, options);
   require_no_flips(result, input);
   require_attributes(result, input, options);
@@ -514,6 +516,14 @@ void fuzz_as(Bytes& bytes) {
         detail::decimate({input.points, input.corners}, options, detail::CollapseOrder::kParted);
     require(parted.has_value(), "decimated in parts");
     require_sound(*parted, input, options);
+    // Swept at first if the target is far.
+    DecimateOptions free = options;
+    free.keep_history = false;
+    free.max_error.reset();
+    free.max_relative_error.reset();
+    const auto swept = detail::decimate({input.points, input.corners}, free, detail::CollapseOrder::kParted);
+    require(swept.has_value(), "swept");
+    require_sound(*swept, input, free);
     if (options.operation == DecimateOperation::kHalfEdgeCollapse && options.attributes.empty() &&
         options.corner_groups.empty())
       fuzz_index_buffer(input, options);
