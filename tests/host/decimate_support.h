@@ -1,6 +1,8 @@
 // What the tests of decimation share.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -57,6 +59,25 @@ inline detail::CollapseMesh collapse_mesh_of(const IndexedFaceSet& set) {
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
   return mesh;
+}
+
+/// Fitted into the cube that parts are cut in.
+inline IndexedFaceSet fitted(IndexedFaceSet set) {
+  float size = 0;
+  for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (Vec3& p : set.points) p = 0.5f / size * p;
+  return set;
+}
+
+/// The neighbours of a vertex, counter-clockwise; that to which its half-edge leads is the last.
+inline std::vector<std::uint32_t> ring_of(const detail::CollapseMesh& mesh, std::uint32_t v) {
+  std::vector<std::uint32_t> ring;
+  std::uint32_t h = mesh.vertices[v].leading;
+  do {
+    h = mesh.around_vertex(h);
+    ring.push_back(mesh.target(h));
+  } while (h != mesh.vertices[v].leading);
+  return ring;
 }
 
 }  // namespace vkmesh::test

@@ -31,27 +31,13 @@ using detail::CollapseMesh;
 using detail::CollapseVertex;
 using detail::SweepBatch;
 using detail::Territory;
+using test::ring_of;
 
-/// Fitted into the cube that parts are cut in.
 CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
   test::jitter(set, 0.05f, seed);
-  float size = 0;
-  for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  for (Vec3& p : set.points) p = 0.5f / size * p;
-  CollapseMesh mesh = test::collapse_mesh_of(set);
+  CollapseMesh mesh = test::collapse_mesh_of(test::fitted(set));
   detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
   return mesh;
-}
-
-/// Counter-clockwise.
-std::vector<std::uint32_t> ring_of(const CollapseMesh& mesh, std::uint32_t v) {
-  std::vector<std::uint32_t> ring;
-  std::uint32_t h = mesh.vertices[v].leading;
-  do {
-    h = mesh.around_vertex(h);
-    ring.push_back(mesh.target(h));
-  } while (h != mesh.vertices[v].leading);
-  return ring;
 }
 
 /// Of both quadrics, at q.

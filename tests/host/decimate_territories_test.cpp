@@ -30,26 +30,12 @@ namespace {
 
 using detail::CollapseMesh;
 using detail::Territory;
+using test::ring_of;
 
 constexpr std::uint8_t kInner = Territory::kInner;
 
-/// Fitted into the cube that parts are cut in.
-CollapseMesh mesh_of(IndexedFaceSet set) {
-  float size = 0;
-  for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  for (Vec3& p : set.points) p = 0.5f / size * p;
-  return test::collapse_mesh_of(set);
-}
-
-std::vector<std::uint32_t> ring_of(const CollapseMesh& mesh, std::uint32_t v) {
-  std::vector<std::uint32_t> ring;
-  const std::uint32_t first = mesh.vertices[v].leading;
-  std::uint32_t h = first;
-  do {
-    ring.push_back(mesh.target(h));
-    h = mesh.around_vertex(h);
-  } while (h != first);
-  return ring;
+CollapseMesh mesh_of(const IndexedFaceSet& set) {
+  return test::collapse_mesh_of(test::fitted(set));
 }
 
 /// What makes it safe that threads work on the parts, by definition.

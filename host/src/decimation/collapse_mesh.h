@@ -74,6 +74,17 @@ struct alignas(64) CollapseVertex {
 };
 static_assert(sizeof(CollapseVertex) == 64);
 
+/// Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
+[[gnu::always_inline]] inline float quadric_value(const std::array<float, 6>& a,
+                                                  const std::array<float, 3>& b, float c, float x, float y,
+                                                  float z) {
+  const float ax = a[0] * x + a[1] * y + a[2] * z;
+  const float ay = a[1] * x + a[3] * y + a[4] * z;
+  const float az = a[2] * x + a[4] * y + a[5] * z;
+  const float sum = c + x * (ax + 2 * b[0]) + y * (ay + 2 * b[1]) + z * (az + 2 * b[2]);
+  return sum > 0 ? sum : 0.0f;
+}
+
 /// The mesh closed by one extra vertex, the apex, joined to every boundary edge by a triangle, its ghost:
 /// there is no boundary, so no walk has a special case, and the link condition of the closed complex is that
 /// of the mesh with boundary (T. Dey, H. Edelsbrunner, S. Guha, D. Nekhayev, "Topology preserving edge

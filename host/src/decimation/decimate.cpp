@@ -168,14 +168,13 @@ CollapseMesh::Built build_along_curve(CollapseMesh& mesh, std::size_t vertex_cou
   return mesh.build(vertex_count, faces, face_of, leading);
 }
 
-/// Of some vertices, spread as evenly as multiples of the golden ratio are.
+/// Of some vertices.
 double mean_weight_of(const CollapseMesh& mesh) {
   constexpr std::size_t kMost = 4096;
   const std::size_t all = mesh.apex(), some = std::min(all, kMost);
   double sum = 0;
   for (std::uint32_t i = 0; i < some; ++i) {
-    const std::uint64_t spread = some == all ? i : (std::uint64_t{i * 0x9e3779b1u} * all) >> 32;
-    sum += static_cast<double>(mesh.vertices[spread].weight);
+    sum += static_cast<double>(mesh.vertices[some == all ? i : spread_evenly(i, all)].weight);
   }
   return some > 0 ? sum / static_cast<double>(some) : 0;
 }

@@ -74,6 +74,11 @@ struct DecimationState {
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };
 
+/// The i-th of some numbers below `all`, spread as evenly as multiples of the golden ratio are.
+[[nodiscard]] inline std::size_t spread_evenly(std::uint32_t i, std::size_t all) {
+  return static_cast<std::size_t>((std::uint64_t{i * 0x9e3779b1u} * all) >> 32);
+}
+
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 
 /// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does,

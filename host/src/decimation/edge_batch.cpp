@@ -39,19 +39,9 @@ struct Lane {
           is_locked(p[3][i]) + 2 * is_locked(q[3][i])};
 }
 
-// Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
-[[gnu::always_inline]] inline float value(const std::array<float, 6>& a, const std::array<float, 3>& b,
-                                          float c, float x, float y, float z) {
-  const float ax = a[0] * x + a[1] * y + a[2] * z;
-  const float ay = a[1] * x + a[3] * y + a[4] * z;
-  const float az = a[2] * x + a[4] * y + a[5] * z;
-  const float sum = c + x * (ax + 2 * b[0]) + y * (ay + 2 * b[1]) + z * (az + 2 * b[2]);
-  return sum > 0 ? sum : 0.0f;
-}
-
 [[gnu::always_inline]] inline float both(const Lane& lane, float x, float y, float z) {
-  return value(lane.pa, lane.pb, lane.pc, x, y, z) +
-         value(lane.qa, lane.qb, lane.qc, x - lane.d[0], y - lane.d[1], z - lane.d[2]);
+  return quadric_value(lane.pa, lane.pb, lane.pc, x, y, z) +
+         quadric_value(lane.qa, lane.qb, lane.qc, x - lane.d[0], y - lane.d[1], z - lane.d[2]);
 }
 
 /// Some of `count` records of vertices, those from number i on; their numbers are every `stride`-th of `ids`.
@@ -230,9 +220,9 @@ VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const CollapseVertex& p, c
       const std::array<float, 6> ra = {r[5][i], r[6][i], r[7][i], r[8][i], r[9][i], r[10][i]};
       const std::array<float, 3> rb = {r[12][i], r[13][i], r[14][i]};
       const float rc = r[11][i], x = r[0][i], y = r[1][i], z = r[2][i];
-      const float at_q = value(ra, rb, rc, qx - x, qy - y, qz - z) + cost;
-      const float at_p = value(ra, rb, rc, px - x, py - y, pz - z) + pc,
-                  at_r = rc + value(pa, pb, pc, x - px, y - py, z - pz);
+      const float at_q = quadric_value(ra, rb, rc, qx - x, qy - y, qz - z) + cost;
+      const float at_p = quadric_value(ra, rb, rc, px - x, py - y, pz - z) + pc,
+                  at_r = rc + quadric_value(pa, pb, pc, x - px, y - py, z - pz);
       const std::int32_t locked = is_locked(r[3][i]);  // it stays at r then
       const float now = at_p < at_r ? at_p : at_r;
       batch.cost[i] = at_q;

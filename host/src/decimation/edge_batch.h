@@ -33,6 +33,14 @@ struct EdgeBatch {
   void gather_q(const CollapseVertex* vertices, std::span<const std::uint32_t> ids);
 };
 
+/// An edge that is due, what it costs, and where its point goes; see EdgeBatch.
+struct DueEdge {
+  std::uint32_t half_edge;
+  float cost;
+  std::int32_t end;
+  std::array<float, 3> x;
+};
+
 /// What a point at p, or at q, costs beside the quadrics.
 struct EndCosts {
   alignas(64) std::array<EdgeBatch::Lanes, 2> at;

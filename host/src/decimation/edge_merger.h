@@ -14,18 +14,11 @@
 #include "decimation/collapse_distance.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/driver.h"
+#include "decimation/edge_batch.h"
 #include "decimation/edge_rim.h"
 #include "decimation/face_turns.h"
 
 namespace vkmesh::detail {
-
-/// An edge that is due, what it costs, and where its point goes; see EdgeBatch.
-struct DueEdge {
-  std::uint32_t half_edge;
-  float cost;
-  std::int32_t end;
-  std::array<float, 3> x;
-};
 
 /// The neighbours of p but q and those of q but p, counter-clockwise, and the half-edges from p and q to
 /// them. What follows the neighbours up to a multiple of EdgeRim::kBlock is there, too.

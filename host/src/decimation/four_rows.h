@@ -61,28 +61,6 @@ namespace vkmesh::detail {
 }
 #endif
 
-/// Whether one of eight words equals one of eight others.
-[[gnu::always_inline]] inline bool any_equal(const std::uint32_t* a, const std::uint32_t* b) {
-#if defined(__GNUC__) || defined(__clang__)
-  using Four = std::uint32_t __attribute__((vector_size(16)));
-  using Two = std::uint64_t __attribute__((vector_size(16)));
-  Four low, high;
-  __builtin_memcpy(&low, a, 16);
-  __builtin_memcpy(&high, a + 4, 16);
-  Two same{};
-  for (std::size_t i = 0; i < 8; ++i) {
-    const Four all = Four{} + b[i];
-    same |= reinterpret_cast<Two>((low == all) | (high == all));
-  }
-  return (same[0] | same[1]) != 0;
-#else
-  bool same = false;
-  for (std::size_t i = 0; i < 8; ++i)
-    for (std::size_t k = 0; k < 8; ++k) same |= a[i] == b[k];
-  return same;
-#endif
-}
-
 /// Adds four floats to those at `to`.
 [[gnu::always_inline]] inline void add_four(const float* from, void* to) {
 #if defined(__GNUC__) || defined(__clang__)

@@ -10,7 +10,7 @@
 
 #include "caches.h"
 #include "decimation/collapse_mesh.h"
-#include "decimation/edge_merger.h"
+#include "decimation/edge_batch.h"
 
 namespace vkmesh::detail {
 

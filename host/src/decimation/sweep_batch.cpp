@@ -54,11 +54,7 @@ VKMESH_CLONES void find_best(const CollapseVertex* vertices, std::uint32_t apex,
     for (std::uint32_t k = 0; k < kMost; ++k) {
       const float x = around.words[0][k] - p.position[0], y = around.words[1][k] - p.position[1],
                   z = around.words[2][k] - p.position[2];
-      const float ax = a[0] * x + a[1] * y + a[2] * z;
-      const float ay = a[1] * x + a[3] * y + a[4] * z;
-      const float az = a[2] * x + a[4] * y + a[5] * z;
-      const float sum = p.c + x * (ax + 2 * b[0]) + y * (ay + 2 * b[1]) + z * (az + 2 * b[2]);
-      const float cost = (sum > 0 ? sum : 0.0f) + around.c[k];
+      const float cost = quadric_value(a, b, p.c, x, y, z) + around.c[k];
       const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMost * kMost + k;
       least = least < bits ? least : bits;
       at_apex |= ring.vertex[k] == apex ? 1u : 0u;

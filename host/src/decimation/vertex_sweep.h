@@ -44,8 +44,7 @@ class VertexSweep {
     std::vector<float> costs;
     std::vector<std::uint32_t> some;
     for (std::uint32_t k = 0; k < kSample; ++k) {
-      // As evenly spread as multiples of the golden ratio are.
-      const auto v = static_cast<std::uint32_t>((std::uint64_t{k * 0x9e3779b1u} * mesh_.apex()) >> 32);
+      const auto v = static_cast<std::uint32_t>(spread_evenly(k, mesh_.apex()));
       if (is_candidate(v)) some.push_back(v);
       if (some.size() < SweepBatch::kSize && k + 1 < kSample) continue;
       batch_->set(mesh_, some);
