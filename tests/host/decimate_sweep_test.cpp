@@ -17,10 +17,8 @@
 #include "decimate_support.h"
 #include "decimation/collapse_order.h"
 #include "decimation/driver.h"
-#include "decimation/edge_merger.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/sweep_batch.h"
-#include "decimation/territories.h"
 #include "decimation/vertex_sweep.h"
 #include "support/shapes.h"
 
@@ -29,8 +27,8 @@ namespace {
 
 using detail::CollapseMesh;
 using detail::CollapseVertex;
+using detail::Stretch;
 using detail::SweepBatch;
-using detail::Territory;
 using test::ring_of;
 
 CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
@@ -80,23 +78,31 @@ Vec3 normal_of(const CollapseMesh& mesh, std::uint32_t f) {
 }  // namespace
 
 TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the least cost", "[decimate]") {
-  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+  for (std::uint32_t seed = 0; seed < 24; ++seed) {
     CollapseMesh mesh = mesh_of(shapes()[seed % 4], seed);
     std::mt19937 random(seed);
     // What vertices have taken in is in their quadrics.
     for (std::uint32_t v = 0; v < mesh.apex(); ++v)
       mesh.vertices[v].c = 1e-7f * static_cast<float>(random() % 1000);
+    const std::uint32_t n = mesh.apex();
+    const Stretch stretch = seed < 12 ? Stretch{0, n} : Stretch{n / 5, n / 5 + n / 2};
     std::vector<std::uint32_t> some;
-    for (std::uint32_t v = seed; v < mesh.apex() && some.size() < SweepBatch::kSize - seed % 3; v += 7)
+    for (std::uint32_t v = stretch.begin + seed % 12;
+         v < stretch.end && some.size() < SweepBatch::kSize - seed % 3; v += 7)
       some.push_back(v);
     SweepBatch batch;
-    batch.set(mesh, some);
+    batch.set(mesh, some, stretch);
     REQUIRE(batch.count == some.size());
     for (std::size_t i = 0; i < some.size(); ++i) {
       const auto ring = ring_of(mesh, some[i]);
-      const bool inner = std::ranges::find(ring, mesh.apex()) == ring.end();
-      REQUIRE(batch.has_best(i) == (inner && ring.size() <= SweepBatch::kMost));
-      if (ring.size() > SweepBatch::kMost) continue;
+      if (ring.size() > SweepBatch::kMost) {
+        CHECK(!batch.has_best(i));
+        continue;
+      }
+      // The apex is of no stretch.
+      const bool inside = std::ranges::all_of(ring, [&](std::uint32_t v) { return stretch.holds(v); });
+      REQUIRE(batch.is_inside[i] == (inside ? 1u : 0u));
+      REQUIRE(batch.has_best(i) == inside);
       REQUIRE(batch.size[i] == ring.size());
       // It comes again, and can be read on from any neighbour.
       for (std::size_t k = 0; k < ring.size() + SweepBatch::kMost; ++k) {
@@ -105,7 +111,7 @@ TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the lea
         REQUIRE(mesh.origin(h) == some[i]);
         REQUIRE(mesh.target(h) == ring[k % ring.size()]);
       }
-      if (!inner) continue;
+      if (!inside) continue;
       std::vector<double> costs;
       for (const std::uint32_t r : ring) costs.push_back(cost_of(mesh.vertices[some[i]], mesh.vertices[r]));
       const double least = std::ranges::min(costs),
@@ -113,25 +119,6 @@ TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the lea
       CHECK(std::abs(costs[batch.best_of(i)] - least) <= 2e-6 * least + rounding);
       CHECK(std::abs(static_cast<double>(batch.cost_of(i)) - least) <= 2e-6 * least + rounding);
     }
-  }
-}
-
-TEST_CASE("a part holds its vertices, each once, in order", "[decimate]") {
-  std::mt19937 random(1);
-  for (std::size_t n = 0; n < 60; ++n) {
-    std::vector<std::uint8_t> labels(n + 9);
-    for (std::uint8_t& label : labels)
-      label = static_cast<std::uint8_t>(random() % 3 | (random() % 8 != 0 ? Territory::kInner : 0));
-    const Territory part(labels, 1);
-    std::vector<std::uint32_t> expected, found;
-    for (std::uint32_t v = 0; v < n; ++v)
-      if (labels[v] == (1 | Territory::kInner)) expected.push_back(v);
-    part.for_each(static_cast<std::uint32_t>(n), [&](std::uint32_t v) { found.push_back(v); });
-    REQUIRE(found == expected);
-    found.clear();
-    Territory().for_each(static_cast<std::uint32_t>(n), [&](std::uint32_t v) { found.push_back(v); });
-    REQUIRE(found.size() == n);
-    CHECK(std::ranges::is_sorted(found));
   }
 }
 
@@ -152,46 +139,81 @@ void check(const CollapseMesh& mesh) {
   }
 }
 
-TEST_CASE("a sweep takes what costs little from its part alone, and leaves the surface what it is",
+/// Any angle is allowed, as far as the options go.
+detail::Limits any_angle() {
+  detail::Limits limits;
+  limits.cos_deviation = -1;
+  return limits;
+}
+
+TEST_CASE("a sweep takes what costs little from its stretch alone, and leaves the surface what it is",
           "[decimate]") {
   for (std::uint32_t seed = 0; seed < 16; ++seed) {
     const IndexedFaceSet shape = shapes()[seed % 4];
     CollapseMesh mesh = mesh_of(seed < 8 ? shape : spread(shape), seed);
-    std::vector<std::uint8_t> labels = detail::divide(mesh, 2);
-    for (std::uint32_t v = 5; v < mesh.apex(); v += 31) mesh.vertices[v].source |= CollapseVertex::kLocked;
+    const std::uint32_t n = mesh.apex();
+    const Stretch stretch = seed % 2 == 0 ? Stretch{0, n} : Stretch{n / 8, n};
+    for (std::uint32_t v = 5; v < n; v += 31) mesh.vertices[v].source |= CollapseVertex::kLocked;
     std::vector<CollapseVertex> before;
-    for (std::uint32_t v = 0; v < mesh.apex(); ++v) before.push_back(mesh.vertices[v]);
-    detail::Limits limits;
-    limits.cos_deviation = -1;
-    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    detail::EdgeMerger<false> merger(mesh);
-    detail::VertexSweep sweep(mesh, merger);
-    const float half = sweep.cost_of_share(0.5);
-    REQUIRE(half < sweep.cost_of_share(1));
-    sweep.run(state, Territory(labels, 1), half);
+    for (std::uint32_t v = 0; v < n; ++v) before.push_back(mesh.vertices[v]);
+    std::vector<CollapseMesh::Face> faces_before;
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) faces_before.push_back(mesh.face(h));
+    std::size_t inner = 0;
+    for (std::uint32_t v = stretch.begin; v < stretch.end; ++v)
+      inner +=
+          std::ranges::all_of(ring_of(mesh, v), [&](std::uint32_t r) { return stretch.holds(r); }) ? 1 : 0;
+    const detail::Limits limits = any_angle();
+    detail::DecimationState state{mesh, limits, mesh.face_count(), n, false, {}};
+    const float half = detail::cost_of_share(mesh, 0.5);
+    REQUIRE(half < detail::cost_of_share(mesh, 1));
+    detail::VertexSweep sweep(state, stretch, half);
+    sweep.run_over_all();
     check(mesh);
 
     std::size_t gone = 0;
-    for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+    for (std::uint32_t v = 0; v < n; ++v) {
       const CollapseVertex& vertex = mesh.vertices[v];
+      CHECK(vertex.position == before[v].position);
+      if (!stretch.holds(v)) {
+        CHECK(vertex.leading == before[v].leading);
+        CHECK(vertex.source == before[v].source);
+        CHECK(vertex.weight == before[v].weight);
+      }
       if (vertex.alive()) {
         CHECK(!vertex.has(CollapseVertex::kTouched));
         CHECK(!vertex.has(CollapseVertex::kHasParked));
-        CHECK(vertex.position == before[v].position);
-        if (labels[v] != (1 | Territory::kInner)) CHECK(vertex.weight == before[v].weight);
         CHECK(vertex.c <= half * 1.001f);
         continue;
       }
       ++gone;
-      CHECK(labels[v] == (1 | Territory::kInner));
+      CHECK(stretch.holds(v));
       CHECK(!vertex.has(CollapseVertex::kLocked));
     }
-    CHECK(8 * gone > static_cast<std::size_t>(std::ranges::count(labels, 1 | Territory::kInner)));
-    CHECK(state.vertices + gone == mesh.apex());
+    for (std::size_t f = 0; f < faces_before.size(); ++f) {
+      const CollapseMesh::Face &face = mesh.face(static_cast<std::uint32_t>(4 * f)), &old = faces_before[f];
+      if (std::ranges::all_of(old.origin, [&](std::uint32_t v) { return stretch.holds(v); })) continue;
+      CHECK(face.origin == old.origin);
+      CHECK(face.twin == old.twin);
+    }
+    CHECK(8 * gone > inner);
+    CHECK(state.vertices + gone == n);
     CHECK(state.faces + 2 * gone == mesh.face_count());
     std::size_t faces = 0;
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
     CHECK(faces == state.faces);
+
+    // What could not go for the stretch's sake is told, each once.
+    std::vector<std::uint32_t> left_out(sweep.left_out().begin(), sweep.left_out().end());
+    std::ranges::sort(left_out);
+    CHECK(std::ranges::adjacent_find(left_out) == left_out.end());
+    for (std::uint32_t v = stretch.begin; v < stretch.end; ++v) {
+      if (before[v].has(CollapseVertex::kLocked) || !mesh.vertices[v].alive()) continue;
+      const auto ring = ring_of(mesh, v);
+      const auto leaves = [&](std::uint32_t r) { return !stretch.holds(r); };
+      if (ring.size() <= SweepBatch::kMost && std::ranges::any_of(ring, leaves))
+        CHECK(std::ranges::binary_search(left_out, v));
+    }
+    for (const std::uint32_t v : left_out) CHECK(mesh.vertices[v].alive());
   }
 }
 
@@ -202,20 +224,13 @@ TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
     IndexedFaceSet shape = test::icosphere(3);
     test::jitter(shape, 0.3f, v);
     CollapseMesh mesh = mesh_of(shape, v);
-    SweepBatch batch;
-    batch.set(mesh, std::span(&v, 1));
-    if (!batch.has_best(0)) continue;
-    // These two alone.
-    std::vector<std::uint8_t> labels(mesh.apex() + 1, 1);
-    labels[v] = labels[batch.ring[0].vertex[batch.best_of(0)]] = 1 | Territory::kInner;
     std::vector<Vec3> normals;
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) normals.push_back(normal_of(mesh, f));
-    detail::Limits limits;
-    limits.cos_deviation = -1;
+    const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    detail::EdgeMerger<false> merger(mesh);
-    detail::VertexSweep(mesh, merger)
-        .run(state, Territory(labels, 1), std::numeric_limits<float>::infinity());
+    // This one alone.
+    detail::VertexSweep(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity())
+        .run(std::span(&v, 1));
     merged += state.vertices < mesh.apex() ? 1 : 0;
     left += state.vertices == mesh.apex() ? 1 : 0;
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
@@ -225,9 +240,58 @@ TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
   CHECK(left > 10);
 }
 
+TEST_CASE("a surface is swept where it is far from its target, the more the farther, and never beyond",
+          "[decimate]") {
+  const auto left_of = [](IndexedFaceSet shape, std::size_t divisor, auto&& change) {
+    test::jitter(shape, 0.02f, 1);
+    CollapseMesh mesh = test::collapse_mesh_of(test::fitted(shape));
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    detail::Limits limits = any_angle();
+    limits.faces = mesh.face_count() / divisor;
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    state.part_faces = 128;
+    state.stretch_faces = 1024;
+    change(state, limits);
+    detail::sweep_if_far(state);
+    check(mesh);
+    std::size_t faces = 0;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
+    REQUIRE(faces == state.faces);
+    CHECK(state.faces >= limits.faces);
+    return state.faces;
+  };
+  const auto as_is = [](detail::DecimationState&, detail::Limits&) {};
+  const IndexedFaceSet grid = test::grid(30, 330);
+  const std::size_t all = grid.face_count(), near = left_of(grid, 8, as_is);
+  CHECK(left_of(grid, 7, as_is) == all);
+  CHECK(near < all * 2 / 3);
+  // What is at the ends of stretches goes, too.
+  const std::size_t in_one = left_of(grid, 8, [](auto& state, auto&) { state.stretch_faces = 1 << 20; });
+  CHECK(near < in_one * 21 / 20);
+  CHECK(left_of(grid, 16, as_is) == near);
+  const std::size_t far = left_of(grid, 100, as_is);
+  CHECK(far < near * 9 / 10);
+  CHECK(left_of(grid, 10000, as_is) < far);
+  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.keep_events = true; }) == all);
+  CHECK(left_of(grid, 8, [](auto&, auto& limits) { limits.error2 = 1; }) == all);
+  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.part_faces = state.mesh.face_count(); }) == all);
+  // It stops where it is told to.
+  for (const std::size_t rest : {std::size_t{1}, all * 4 / 5, all - 10}) {
+    CollapseMesh mesh = test::collapse_mesh_of(test::fitted(grid));
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    detail::Limits limits = any_angle();
+    limits.faces = rest;
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    detail::VertexSweep(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity()).run_over_all();
+    CHECK(state.faces + 1 >= rest);
+    CHECK((state.faces <= rest) == (rest > 1));
+  }
+}
+
 TEST_CASE("decimation: what is far from its target is swept at first, on any number of threads alike",
           "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  // Of the grid six rows are a stretch.
   IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
   test::jitter(mesh, 0.05f, 1);
   for (const DecimateOptions& way : test::ways()) {
@@ -250,12 +314,11 @@ TEST_CASE("decimation: what is far from its target is swept at first, on any num
       options.target_ratio = ratio;
       const Decimated one = on(1, options);
       for (const int threads : {2, 3, 8}) CHECK(same(on(threads, options), one));
-      if (ratio > 0)
-        CHECK(static_cast<double>(one.mesh.face_count()) <= ratio * static_cast<double>(mesh.face_count()));
       // The order tells in a history, and where an error is promised.
       options.keep_history = true;
       const Decimated in_order = on(1, options);
       CHECK(same(in_order, one) == (ratio > 0.125));
+      if (in_order.stop == DecimateStop::kTargetReached) CHECK(one.stop == DecimateStop::kTargetReached);
       options.keep_history = false;
       options.max_relative_error = 10;
       CHECK(same(on(1, options), in_order));

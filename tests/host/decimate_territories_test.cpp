@@ -313,7 +313,7 @@ TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimat
 
 TEST_CASE("each half of an edge knows whether it is at the seam before parts are at work", "[decimate]") {
   for (const IndexedFaceSet& shape : {test::grid(20, 22), test::torus(24, 14)}) {
-    InParts all(shape, shape.face_count() / 4, 0);
+    InParts all(shape, shape.face_count() / 4, shape.face_count() / 2);  // which is too near to be swept
     const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
     OptimalInParts collapses(all.state);
     collapses.fill();
@@ -323,6 +323,25 @@ TEST_CASE("each half of an edge knows whether it is at the seam before parts are
       seam += h % 4 != 3 && all.mesh.at_seam(h) ? 1 : 0;
     CHECK(seam > 100);
   }
+}
+
+TEST_CASE("what has gone before a surface is divided is on no seam", "[decimate]") {
+  InParts all(test::grid(60, 22), 1, 300);
+  all.state.stretch_faces = 1 << 20;
+  detail::sweep_if_far(all.state);
+  REQUIRE(all.state.faces < all.mesh.face_count() * 3 / 4);
+  const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
+  std::array<std::size_t, 4> sizes{};
+  for (std::uint32_t v = 0; v < all.mesh.apex(); ++v) {
+    if (!all.mesh.vertices[v].alive()) continue;
+    const std::uint8_t part = labels[v] & ~kInner;
+    ++sizes.at(part);
+    const auto ring = ring_of(all.mesh, v);
+    const bool inner = std::ranges::all_of(
+        ring, [&](std::uint32_t r) { return r == all.mesh.apex() || (labels[r] & ~kInner) == part; });
+    CHECK(((labels[v] & kInner) != 0) == inner);
+  }
+  CHECK(3 * std::ranges::min(sizes) > std::ranges::max(sizes));
 }
 
 TEST_CASE("what was pruned is of no part", "[decimate]") {

@@ -68,10 +68,45 @@ struct DecimationState {
   AttributeQuadrics* attributes = nullptr;  // none
   Criteria* criteria = nullptr;             // none
   bool boundary_kept = false;
-  double mean_weight = 0;                         // of all vertices at first
-  std::size_t part_faces = std::size_t{1} << 16;  // of parts that are decimated side by side
+  double mean_weight = 0;                            // of all vertices at first
+  std::size_t part_faces = std::size_t{1} << 16;     // of parts that are decimated side by side
+  std::size_t stretch_faces = std::size_t{1} << 17;  // of stretches that are swept so
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
+};
+
+/// What happens in one of several parts of a surface, while threads work side by side.
+class PartState {
+ public:
+  explicit PartState(const DecimationState& all)
+      : limits_(all.limits),
+        state{all.mesh,          limits_,        0, 0, all.keep_events, {}, nullptr, nullptr,
+              all.boundary_kept, all.mean_weight} {
+    limits_.faces = 1;  // a removal takes two
+    limits_.vertices = 0;
+  }
+  PartState(const PartState&) = delete;
+  PartState& operator=(const PartState&) = delete;
+
+  /// It may take so many away.
+  void start(std::size_t faces, std::size_t vertices) {
+    state.faces = faces_ = faces;
+    state.vertices = vertices_ = vertices;
+  }
+  /// When no part is at work.
+  void report_to(DecimationState& all) {
+    all.faces -= faces_ - state.faces;
+    all.vertices -= vertices_ - state.vertices;
+    all.outcome += state.outcome;
+    state.outcome = {};
+  }
+
+ private:
+  Limits limits_;
+  std::size_t faces_ = 0, vertices_ = 0;
+
+ public:
+  DecimationState state;
 };
 
 /// The i-th of some numbers below `all`, spread as evenly as multiples of the golden ratio are.

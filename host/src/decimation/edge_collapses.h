@@ -26,7 +26,6 @@
 #include "decimation/placements.h"
 #include "decimation/star.h"
 #include "decimation/territories.h"
-#include "decimation/vertex_sweep.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -82,19 +81,25 @@ class EdgeCollapses {
   /// then put(number, half-edge, cost) for one half-edge of each edge.
   template <class Prepare, class Put>
   void fill(Prepare&& prepare, Put&& put) {
-    constexpr std::uint32_t kAhead = 64;
-    const auto last = static_cast<std::uint32_t>(mesh_.face_count()) - 1;
-    const auto make = [this, &prepare, last](std::size_t begin, std::size_t end, First& block) {
+    constexpr std::size_t kAhead = 64;
+    const auto make = [this, &prepare](std::size_t begin, std::size_t end, First& block) {
       CollapseMesh::Face* const faces = &mesh_.face(0);
       const CollapseVertex* const vertices = vertices_.data();
       std::uint32_t* const ids = block.ids.data();
       EdgeBatch::Ends* const ends = block.ends.data();
       std::uint8_t* const numbers = block.number.data();
-      std::size_t count = 0;
+      // Nothing foretells which faces are left, so there is no jump.
+      std::uint32_t* const alive = block.alive.data();
+      std::size_t left = 0, count = 0;
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
-        for (const std::uint32_t v : faces[std::min(f + kAhead, last)].origin) prefetch(&vertices[v]);
+        alive[left] = f;
+        left += faces[f].alive() ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < left; ++k) {
+        for (const std::uint32_t v : faces[alive[std::min(k + kAhead, left - 1)]].origin)
+          prefetch(&vertices[v]);
+        const std::uint32_t f = alive[k];
         CollapseMesh::Face& face = faces[f];
-        if (!face.alive()) continue;
         const std::array<std::uint8_t, 3> number = prepare(face);
         std::uint32_t tags = 0;
         for (std::uint32_t i = 0; i < 3; ++i) {
@@ -129,12 +134,6 @@ class EdgeCollapses {
     put_back();
     forget_touched();
   }
-
-  /// Before anything is queued; see VertexSweep.
-  [[nodiscard]] float cost_of_sweep() {
-    return VertexSweep(mesh_, merger_).cost_of_share(VertexSweep::kShare);
-  }
-  void sweep(float most) { VertexSweep(mesh_, merger_).run(share_->state, share_->territory, most); }
 
   /// Takes over what another has handed on.
   void take_over(Share& other) {
@@ -192,6 +191,7 @@ class EdgeCollapses {
   // Edges of so many faces, and from where to where they go.
   struct First {
     static constexpr std::size_t kMost = 3 * kFirstFaces + 1;  // one more is written
+    std::vector<std::uint32_t> alive = std::vector<std::uint32_t>(kFirstFaces);
     std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(kMost);
     std::vector<EdgeBatch::Ends> ends = std::vector<EdgeBatch::Ends>(kMost);
     std::vector<std::uint8_t> number = std::vector<std::uint8_t>(kMost);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "passes/clones.h"
 
@@ -42,21 +43,32 @@ struct Move {
 };
 
 // Of the corners a and b and a third at 0, over about the squared sides, so that no square leaves the range
-// of a float: a power of two, since to divide is slow.
-struct Normal {
-  float x, y, z, length2;
-  float sides;  // the squared sides, in [1, 2) as a rule
+// of a float: a power of two, since to divide is slow. Of several faces if Float and Int have several lanes.
+template <class Float, class Int>
+struct Normals {
+  Float x, y, z, length2;
+  Float sides;  // the squared sides, in [1, 2) as a rule
 
-  [[gnu::always_inline]] Normal(float ax, float ay, float az, float bx, float by, float bz) {
+  [[gnu::always_inline]] Normals(const Float& ax, const Float& ay, const Float& az, const Float& bx,
+                                 const Float& by, const Float& bz) {
     constexpr std::int32_t kExponent = 0x7f800000, kTwiceBias = 0x7f000000;
-    const float squared = (ax * ax + ay * ay + az * az) + (bx * bx + by * by + bz * bz) + 1e-36f;
-    const float scale = std::bit_cast<float>(kTwiceBias - (std::bit_cast<std::int32_t>(squared) & kExponent));
+    const Float squared = (ax * ax + ay * ay + az * az) + (bx * bx + by * by + bz * bz) + 1e-36f;
+    Int bits;
+    std::memcpy(&bits, &squared, sizeof bits);
+    bits = kTwiceBias - (bits & kExponent);
+    Float scale;
+    std::memcpy(&scale, &bits, sizeof scale);
     x = (ay * bz - az * by) * scale;
     y = (az * bx - ax * bz) * scale;
     z = (ax * by - ay * bx) * scale;
     length2 = x * x + y * y + z * z;
     sides = squared * scale;
   }
+};
+
+struct Normal : Normals<float, std::int32_t> {
+  using Normals::Normals;
+
   [[nodiscard, gnu::always_inline]] bool exists() const {
     return length2 > kDegenerate * kDegenerate * (sides * sides);
   }
@@ -65,14 +77,15 @@ struct Normal {
   }
 };
 
+constexpr float kSquareAgainst = -(kAgainst * kAgainst);
+
 // What happens to the faces. Each looks at the next one too, which costs less than to hand normals
 // from lane to lane.
-VKMESH_CLONES std::int32_t turn_faces(const float* px, const float* py, const float* pz, const Move& move) {
+VKMESH_CLONES std::int32_t turn_many(const float* px, const float* py, const float* pz, const Move& move) {
   const float p0 = move.p[0], p1 = move.p[1], p2 = move.p[2];
   const float d0 = move.d[0], d1 = move.d[1], d2 = move.d[2];
   const float x0 = move.x[0], x1 = move.x[1], x2 = move.x[2];
   const float square_cos = move.cos_deviation * std::fabs(move.cos_deviation);
-  constexpr float kSquareAgainst = -(kAgainst * kAgainst);
   std::int32_t found = 0;
   for (std::int32_t left = move.faces, at_p = move.at_p; left > 0; left -= kBlock, at_p -= kBlock) {
     for (std::int32_t k = 0; k < kBlock; ++k) {  // so many and no others, or g++ 12 does it one by one
@@ -96,6 +109,66 @@ VKMESH_CLONES std::int32_t turn_faces(const float* px, const float* py, const fl
     pz += kBlock;
   }
   return found;
+}
+
+#if defined(VKMESH_HAS_CLONES)
+// Few faces are one to a lane, and lanes hand on what the one before needs, too. Next to the last is the
+// first again, if p has a face.
+__attribute__((target("avx512f"))) std::int32_t turn_faces(const float* px, const float* py, const float* pz,
+                                                           const Move& move) {
+  using Floats = float __attribute__((vector_size(64)));
+  using Ints = std::int32_t __attribute__((vector_size(64)));
+  constexpr std::int32_t kLanes = 16;
+  if (move.faces > kLanes || move.at_p == 0) [[unlikely]]
+    return turn_many(px, py, pz, move);
+  constexpr Ints kLane = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Ints next = kLane + 1 < move.faces ? kLane + 1 : Ints{};
+  const auto is = kLane < move.faces;
+  const auto at_q = kLane >= move.at_p;
+  Floats sx, sy, sz;
+  __builtin_memcpy(&sx, px, sizeof sx);
+  __builtin_memcpy(&sy, py, sizeof sy);
+  __builtin_memcpy(&sz, pz, sizeof sz);
+  sx -= move.p[0];
+  sy -= move.p[1];
+  sz -= move.p[2];
+  const Floats tx = __builtin_shuffle(sx, next), ty = __builtin_shuffle(sy, next),
+               tz = __builtin_shuffle(sz, next);
+  const float x0 = move.x[0], x1 = move.x[1], x2 = move.x[2];
+  const Normals<Floats, Ints> after(sx - x0, sy - x1, sz - x2, tx - x0, ty - x1, tz - x2);
+  const Floats none{};
+  const Floats ox = at_q ? none + move.d[0] : none, oy = at_q ? none + move.d[1] : none,
+               oz = at_q ? none + move.d[2] : none;
+  const Normals<Floats, Ints> before(sx - ox, sy - oy, sz - oz, tx - ox, ty - oy, tz - oz);
+  const Floats turned = before.x * after.x + before.y * after.y + before.z * after.z;
+  const Floats bent = after.x * __builtin_shuffle(after.x, next) +
+                      after.y * __builtin_shuffle(after.y, next) + after.z * __builtin_shuffle(after.z, next);
+  const float square_cos = move.cos_deviation * std::fabs(move.cos_deviation);
+  constexpr float kSquare = kDegenerate * kDegenerate;
+  const Floats square_turned = turned * (turned < 0 ? -turned : turned),
+               square_bent = bent * (bent < 0 ? -bent : bent);
+  const Ints far = square_turned < square_cos * (before.length2 * after.length2);
+  const Ints opposed =
+      square_bent < kSquareAgainst * (after.length2 * __builtin_shuffle(after.length2, next));
+  const Ints had = is & (before.length2 > kSquare * (before.sides * before.sides)),
+             has = is & (after.length2 > kSquare * (after.sides * after.sides));
+  const Ints found = ((had & (~has | far)) & kBroken) | ((has & ~had) & kHadNone) |
+                     ((has & __builtin_shuffle(has, next) & opposed) & kOpposed);
+  const auto eight = __builtin_shufflevector(found, found, 0, 1, 2, 3, 4, 5, 6, 7) |
+                     __builtin_shufflevector(found, found, 8, 9, 10, 11, 12, 13, 14, 15);
+  const auto four =
+      __builtin_shufflevector(eight, eight, 0, 1, 2, 3) | __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+  using Longs = std::uint64_t __attribute__((vector_size(16)));
+  const auto two = reinterpret_cast<Longs>(four);
+  const std::uint64_t all = two[0] | two[1];
+  return static_cast<std::int32_t>(all | all >> 32);
+}
+
+__attribute__((target("default")))
+#endif
+std::int32_t
+turn_faces(const float* px, const float* py, const float* pz, const Move& move) {
+  return turn_many(px, py, pz, move);
 }
 
 // The normal of a face whose third corner lies at p + x, twice its area vector over the squared sides; 0 if

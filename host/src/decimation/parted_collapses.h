@@ -19,6 +19,7 @@
 #include "decimation/driver.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/territories.h"
+#include "decimation/vertex_sweep.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -33,6 +34,7 @@ class PartedCollapses {
   static constexpr std::size_t kStep = kRemovalsBetweenReports;
 
   explicit PartedCollapses(DecimationState& state) : state_(state) {
+    if constexpr (!Queue::kExact) sweep_if_far(state);
     const std::size_t count = part_count(), edges = 3 * state.mesh.face_count() / 2 + 1;
     if (count > 1) {
       labels_ = divide(state.mesh, count);
@@ -52,8 +54,6 @@ class PartedCollapses {
       rest_->queue.start();
       return;
     }
-    if constexpr (!Queue::kExact && !kAttributes)
-      if (VertexSweep::is_worth_while(state_)) sweep();
     const auto mark = [&](CollapseMesh::Face& face) { return mark_seam(labels_, face); };
     for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
       if (CollapseMesh::Face& ghost = mesh.face(static_cast<std::uint32_t>(g)); ghost.alive()) mark(ghost);
@@ -94,35 +94,10 @@ class PartedCollapses {
 
   struct Part {
     Part(const DecimationState& all, std::size_t edges, Territory territory)
-        : limits(all.limits),
-          state{all.mesh,          limits,         0, 0, all.keep_events, {}, nullptr, nullptr,
-                all.boundary_kept, all.mean_weight},
-          share(state, edges, territory) {
-      limits.faces = limits.vertices = kRest;
-    }
+        : part(all), share(part.state, edges, territory) {}
 
-    /// Takes away so many.
-    Share& start(std::size_t most_faces, std::size_t most_vertices) {
-      faces = most_faces;
-      vertices = most_vertices;
-      state.faces = kRest + faces;
-      state.vertices = kRest + vertices;
-      return share;
-    }
-
-    void report_to(DecimationState& all) {
-      all.faces -= kRest + faces - state.faces;
-      all.vertices -= kRest + vertices - state.vertices;
-      collapses = state.outcome.collapses;
-      all.outcome += state.outcome;
-      state.outcome = {};
-    }
-
-    static constexpr std::size_t kRest = 2;  // faces that a collapse may remove beyond the limit
-    Limits limits;
-    std::size_t faces = 0, vertices = 0;
+    PartState part;
     std::size_t collapses = 0;  // of the last round, of which the next will have about as many
-    DecimationState state;
     Share share;
   };
 
@@ -133,9 +108,8 @@ class PartedCollapses {
     return worker;
   }
 
-  /// All parts, each by a worker. Together they do not go beyond the limits.
-  template <class Work>
-  void side_by_side(Work&& work) {
+  /// All parts, each by a worker, up to the bucket `last`. Together they do not go beyond the limits.
+  void run_side_by_side(std::uint32_t last) {
     const std::size_t divisor = 2 * parts_.size(), faces = (state_.faces - state_.limits.faces) / divisor,
                       vertices = (state_.vertices - state_.limits.vertices) / divisor;
     // Those with most to do first, or threads would wait for the last of them.
@@ -145,17 +119,17 @@ class PartedCollapses {
     std::atomic<std::size_t> next = 0;
     parallel_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (; begin < end; ++begin) {
+        Part& part = *by_work[next++];
+        part.part.start(faces, vertices);
         Worker& worker = workers_.local();
-        worker.work_on(by_work[next++]->start(faces, vertices));
-        work(worker);
+        worker.work_on(part.share);
+        worker.run(last);
       }
     });
-    for (const auto& part : parts_) part->report_to(state_);
-  }
-
-  void sweep() {
-    const float most = mine().cost_of_sweep();
-    side_by_side([most](Worker& worker) { worker.sweep(most); });
+    for (const auto& part : parts_) {
+      part->collapses = part->part.state.outcome.collapses;
+      part->part.report_to(state_);
+    }
   }
 
   bool round() {
@@ -165,7 +139,7 @@ class PartedCollapses {
     last += (is_near() ? kNear : kFar) - 1;
     for (const auto& part : parts_) part->share.watch(state_);
     const auto done = static_cast<std::ptrdiff_t>(state_.outcome.events.size());
-    side_by_side([last](Worker& worker) { worker.run(last); });
+    run_side_by_side(last);
     Worker& worker = mine();
     for (const auto& part : parts_) worker.take_over(part->share);
     // A history that stops anywhere has done as much in each part.

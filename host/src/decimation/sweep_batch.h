@@ -12,6 +12,13 @@
 
 namespace vkmesh::detail {
 
+/// Vertices that follow each other in memory.
+struct Stretch {
+  std::uint32_t begin, end;
+
+  [[nodiscard]] bool holds(std::uint32_t v) const { return v - begin < end - begin; }
+};
+
 struct SweepBatch {
   static constexpr std::size_t kSize = 16;
   /// Vertices of more neighbours are left alone.
@@ -46,13 +53,20 @@ struct SweepBatch {
       for (std::uint32_t k = 0; k < kMost; ++k) found |= (edge[k] == start ? 1u : 0u) << k;
       return found == 0 ? 0 : static_cast<std::uint32_t>(std::countr_zero(found)) + 1;
     }
+    /// Whether all of the kMost walked to are of the stretch.
+    [[nodiscard]] bool is_inside(const Stretch& stretch) const {
+      bool inside = true;
+      for (std::uint32_t k = 0; k < kMost; ++k) inside &= stretch.holds(vertex[k]);
+      return inside;
+    }
   };
 
   /// Takes up to kSize vertices that are not isolated, looks around each, and finds its neighbours' costs.
-  void set(const CollapseMesh& mesh, std::span<const std::uint32_t> some);
+  /// All are of the stretch, beyond which no vertex is read.
+  void set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const Stretch& stretch);
 
   /// Of vertex i: whether it has a neighbour to go to, which one that is in its ring, and the sum of both
-  /// quadrics there, to one part in 2^20. A vertex at the boundary has none.
+  /// quadrics there, to one part in 2^20. It has none at the boundary, and none at the end of the stretch.
   [[nodiscard]] bool has_best(std::size_t i) const {
     return best[i] < kNone;
   }
@@ -66,7 +80,8 @@ struct SweepBatch {
   std::size_t count = 0;
   std::array<std::uint32_t, kSize> vertex;
   std::array<Ring, kSize> ring;
-  std::array<std::uint32_t, kSize> size;  // of the ring
+  std::array<std::uint32_t, kSize> size;       // of the ring
+  std::array<std::uint32_t, kSize> is_inside;  // the ring, of the stretch
 
   /// Bits of an infinite cost.
   static constexpr std::uint32_t kNone = 0x7f800000;

@@ -76,8 +76,9 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
   const std::size_t n = mesh.apex();
   constexpr std::size_t kSample = std::size_t{1} << 15;  // vertices are enough to know where the middle is
   const std::size_t stride = std::max<std::size_t>(n / kSample, 1);
-  std::vector<Position> sample(n / stride);
-  for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = mesh.vertices[i * stride].position;
+  std::vector<Position> sample;
+  for (std::size_t v = 0; v < n; v += stride)
+    if (mesh.vertices[v].alive()) sample.push_back(mesh.vertices[v].position);
   const Cuts cuts = cut_in_halves(sample, parts);
 
   std::vector<std::uint8_t> part(n + 1, 0);
@@ -92,9 +93,11 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
   for (std::size_t v = 0; v < part.size(); ++v) labels[v] = part[v] | Territory::kInner;
   mesh.parts().for_each([&](const VertexParts::Part& range) {
     range.for_each_face([&](std::uint32_t f) {
-      const auto& [a, b, c] = mesh.face(4 * f).origin;
-      if (!mesh.alive(4 * f)) return;  // pruned
-      if (((part[a] ^ part[b]) | (part[b] ^ part[c])) == 0) return;
+      // Whether it is alive nothing foretells: no jump, and one that is gone has no first corner.
+      const CollapseMesh::Face& face = mesh.face(4 * f);
+      const std::uint32_t a = std::min(face.origin[0], mesh.apex()), b = face.origin[1], c = face.origin[2];
+      const auto differ = static_cast<std::uint32_t>((part[a] ^ part[b]) | (part[b] ^ part[c]));
+      if ((differ & (0u - static_cast<std::uint32_t>(face.alive()))) == 0) return;
       for (const std::uint32_t v : {a, b, c})
         if (range.has(v)) labels[v] = part[v];
     });

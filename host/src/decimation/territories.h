@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -28,24 +27,6 @@ class Territory {
   /// Of a part, or everywhere if there are none.
   [[nodiscard]] bool holds(std::uint32_t v) const {
     return labels_ == nullptr || labels_[v] == (part_ | kInner);
-  }
-
-  /// Calls f(v) in order for all that it holds below `end`. O(end), eight at a time.
-  template <class F>
-  void for_each(std::uint32_t end, F&& f) const {
-    constexpr std::uint64_t kOnes = 0x0101010101010101, kHigh = 0x80 * kOnes;
-    const std::uint64_t all = kOnes * (part_ | kInner);
-    std::uint32_t v = 0;
-    for (; labels_ != nullptr && v + 8 <= end; v += 8) {
-      std::uint64_t eight;
-      std::memcpy(&eight, labels_ + v, sizeof eight);
-      eight ^= all;
-      if (((eight - kOnes) & ~eight & kHigh) == 0) continue;  // none of the bytes is 0
-      for (std::uint32_t i = v; i < v + 8; ++i)
-        if (holds(i)) f(i);
-    }
-    for (; v < end; ++v)
-      if (holds(v)) f(v);
   }
 
   [[nodiscard]] bool is_seam() const { return labels_ != nullptr && !is_part(); }

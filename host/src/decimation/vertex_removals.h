@@ -51,12 +51,7 @@ class VertexRemovals {
 
   /// All vertices with their costs.
   void fill() {
-    if constexpr (!Queue::kExact && !kAttributes)
-      if (VertexSweep::is_worth_while(state_)) {
-        EdgeMerger<false> merger(mesh_);
-        VertexSweep sweep(mesh_, merger);
-        sweep.run(state_, Territory(), sweep.cost_of_share(VertexSweep::kShare));
-      }
+    if constexpr (!Queue::kExact) sweep_if_far(state_);
     std::array<std::uint32_t, kStars> ids;
     std::array<float, kStars> errors;
     std::size_t count = 0;
