@@ -702,8 +702,8 @@ TEST_CASE("decimation: the dragon to a tenth stays manifold and near", "[decimat
       CHECK(distance->two_sided().maximum < 4.9e-4 * distance->diagonal);
   }
   // To a hundredth, where points that moved far within their planes made the largest error: on twelve inputs
-  // that differ by rounding and order it was 3.5e-3 to 6.1e-3 before they had to wait, and on twenty-four it
-  // is 2.4e-3 to 2.8e-3.
+  // that differ by rounding and order it was 3.5e-3 to 6.1e-3 before they had to wait, and on fifteen it is
+  // 2.2e-3 to 3.0e-3.
   const Decimated few = run(input, mesh->points, to_faces(DecimateOperation::kEdgeCollapse, 8713));
   const auto distance =
       surface_distance({mesh->points, mesh->corners}, {few.positions, few.mesh.origins()}, {200000, 1});

@@ -162,6 +162,7 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
   parts_.for_each([&](const VertexParts::Part& part) {
     part.for_each_face([&](std::uint32_t f) {
+      prefetch_stream(&faces_[f]);
       for (const std::uint32_t v : faces_[f].origin)
         if (part.has(v)) ++ends[v];
     });
@@ -176,6 +177,7 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
   }
   parts_.for_each([&](const VertexParts::Part& part) {
     part.for_each_face([&](std::uint32_t f) {
+      prefetch_stream(&faces_[f]);
       for (std::uint32_t i = 0; i < 3; ++i) {
         const std::uint32_t v = faces_[f].origin[i];
         if (part.has(v)) leaving[ends[v]++] = 4 * f + i;

@@ -130,6 +130,7 @@ class CollapseMesh {
       VertexParts::Range range;
       bool all_simple = true;
       for (std::size_t f = begin; f < end; ++f) {
+        prefetch_stream(&faces_[f]);
         const Face face = face_of(f);
         const auto& [a, b, c] = face.origin;
         all_simple &= (a != b) & (b != c) & (c != a);

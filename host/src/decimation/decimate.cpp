@@ -10,6 +10,7 @@
 
 #include <vkmesh/decimation/decimate.h>
 
+#include "caches.h"
 #include "catching.h"
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
@@ -227,6 +228,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     std::size_t count = 0;
     for (std::size_t v = begin; v < end; ++v) {
       CollapseVertex& vertex = mesh.vertices[v];
+      prefetch_stream(&vertex);
       const std::uint32_t source = vertex_order.empty() ? static_cast<std::uint32_t>(v) : vertex_order[v];
       vertex = {};
       vertex.position = local(source);

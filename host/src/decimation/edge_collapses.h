@@ -14,6 +14,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/handles.h>
 
+#include "caches.h"
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_queues.h"
@@ -61,13 +62,14 @@ class EdgeCollapses {
     void watch(const DecimationState& all) {
       const std::size_t share = std::bit_floor(all.mesh.face_count() / std::max<std::size_t>(all.faces, 1));
       const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
-      cost_of_distance = share >= kFewAtBoundary ? static_cast<float>(edge_weight / kFarthest2) : 0.0f;
       only_at_boundary = share < kFewLeft;
+      const double farthest2 = only_at_boundary ? kFarthestAtBoundary2 : kFarthest2;
+      cost_of_distance = share >= kFewAtBoundary ? static_cast<float>(edge_weight / farthest2) : 0.0f;
     }
     /// A 32nd of the faces, and a fourth at the boundary, where tips are cut off at next to no cost.
     static constexpr std::size_t kFewLeft = 32, kFewAtBoundary = 4;
     /// How far, in roots of the mean square distance that a cost stands for; squared.
-    static constexpr double kFarthest2 = 2.25;
+    static constexpr double kFarthest2 = 1.75, kFarthestAtBoundary2 = 2.25;
   };
 
   explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices), merger_(mesh) {}
@@ -92,6 +94,7 @@ class EdgeCollapses {
       std::uint32_t* const alive = block.alive.data();
       std::size_t left = 0, count = 0;
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
+        prefetch_stream(&faces[f]);
         alive[left] = f;
         left += faces[f].alive() ? 1 : 0;
       }

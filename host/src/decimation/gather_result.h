@@ -15,6 +15,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/handles.h>
 
+#include "caches.h"
 #include "collect.h"
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
@@ -76,6 +77,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   std::vector<std::uint32_t> by(n);
   const std::vector<std::uint32_t> alive = collect(n, [&](std::uint32_t v) {
     const CollapseVertex& vertex = vertices[v];
+    prefetch_stream(&vertex);
     const std::uint32_t source = vertex.source & kMask;
     const bool absorbed = !vertex.alive() && vertex.leading != kInvalid;
     by[source] = absorbed ? source_of(vertex.leading & ~CollapseVertex::kGone) : source;
@@ -111,8 +113,10 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
         vertex.has(CollapseVertex::kMoved) ? point_of<Point>(vertex.position, frame) : points[source];
   }
 
-  const std::vector<std::uint32_t> alive_faces =
-      collect(mesh.face_count(), [&](std::uint32_t f) { return mesh.alive(4 * f); });
+  const std::vector<std::uint32_t> alive_faces = collect(mesh.face_count(), [&](std::uint32_t f) {
+    prefetch_stream(&mesh.face(4 * f));
+    return mesh.alive(4 * f);
+  });
   result.source_face = in_input_order(alive_faces, mesh.face_count(), source_of_face);
   const auto new_face_of =
       std::make_unique_for_overwrite<std::uint32_t[]>(mesh.face_count());  // of those alive

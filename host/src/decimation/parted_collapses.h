@@ -14,6 +14,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include "caches.h"
 #include "collect.h"
 #include "decimation/collapse_queues.h"
 #include "decimation/driver.h"
@@ -82,9 +83,9 @@ class PartedCollapses {
   using Share = typename Worker::Share;
 
   static constexpr std::size_t kMostParts = 64;
-  /// Buckets of a round: two octaves, and a quarter of one for the last part of the removals, which decides
-  /// over what is left.
-  static constexpr std::uint32_t kFar = 32, kNear = 4;
+  /// Buckets of a round: two octaves; one for the last quarter of the removals; and a quarter of one where
+  /// there are less than three times as many faces or vertices as are to be left, which decides over those.
+  static constexpr std::uint32_t kFar = 32, kLast = 16, kNear = 4;
 
   [[nodiscard]] std::size_t part_count() const {
     if (Queue::kExact || kAttributes || state_.criteria != nullptr) return 1;
@@ -136,7 +137,7 @@ class PartedCollapses {
     std::uint32_t last = rest_->queue.first();
     for (const auto& part : parts_) last = std::min(last, part->share.queue.first());
     if (last == MonotoneQueue::kNone) return false;
-    last += (is_near() ? kNear : kFar) - 1;
+    last += (is_near() ? kNear : is_last() ? kLast : kFar) - 1;
     for (const auto& part : parts_) part->share.watch(state_);
     const auto done = static_cast<std::ptrdiff_t>(state_.outcome.events.size());
     run_side_by_side(last);
@@ -149,9 +150,12 @@ class PartedCollapses {
     return true;
   }
 
-  [[nodiscard]] bool is_near() const {
+  [[nodiscard]] bool is_last() const {
     return 4 * (state_.faces - state_.limits.faces) < state_.mesh.face_count() - state_.limits.faces ||
            4 * (state_.vertices - state_.limits.vertices) < state_.mesh.apex() - state_.limits.vertices;
+  }
+  [[nodiscard]] bool is_near() const {
+    return state_.faces < 3 * state_.limits.faces || state_.vertices < 3 * state_.limits.vertices;
   }
   /// Parts must have some faces,
   [[nodiscard]] bool is_small() const { return state_.faces < state_.part_faces / 16 * parts_.size(); }
@@ -164,7 +168,10 @@ class PartedCollapses {
   void join_halves_of_parts() {
     CollapseMesh& mesh = state_.mesh;
     if (faces_left_.empty()) {
-      faces_left_ = collect(mesh.half_edge_bound() / 4, [&](std::uint32_t f) { return mesh.alive(4 * f); });
+      faces_left_ = collect(mesh.half_edge_bound() / 4, [&](std::uint32_t f) {
+        prefetch_stream(&mesh.face(4 * f));
+        return mesh.alive(4 * f);
+      });
     } else {
       std::erase_if(faces_left_, [&](std::uint32_t f) { return !mesh.alive(4 * f); });
     }

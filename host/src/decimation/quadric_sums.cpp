@@ -64,6 +64,7 @@ void add_faces(CollapseMesh& mesh, const VertexParts::Part& part) {
         std::array<std::array<const void*, 4>, 3> rows;
         for (std::uint32_t k = 0; k < 4; ++k) {
           const std::uint32_t f = first + std::min(i + k, count - 1);
+          prefetch_stream(&mesh.face(4 * f));
           for (const std::uint32_t v : mesh.face(4 * std::min(f + kAhead, last)).origin)
             prefetch(&vertices[v]);
           for (std::size_t corner = 0; corner < 3; ++corner)

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "caches.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -84,8 +85,10 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
   std::vector<std::uint8_t> part(n + 1, 0);
   parallel_ranges(n, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
+      const CollapseVertex& vertex = mesh.vertices[v];
+      prefetch_stream(&vertex);
       std::size_t at = 0;
-      for (const std::vector<Cut>& level : cuts) at = 2 * at + half_of(level[at], mesh.vertices[v].position);
+      for (const std::vector<Cut>& level : cuts) at = 2 * at + half_of(level[at], vertex.position);
       part[v] = static_cast<std::uint8_t>(at);
     }
   });
@@ -95,6 +98,7 @@ std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
     range.for_each_face([&](std::uint32_t f) {
       // Whether it is alive nothing foretells: no jump, and one that is gone has no first corner.
       const CollapseMesh::Face& face = mesh.face(4 * f);
+      prefetch_stream(&face);
       const std::uint32_t a = std::min(face.origin[0], mesh.apex()), b = face.origin[1], c = face.origin[2];
       const auto differ = static_cast<std::uint32_t>((part[a] ^ part[b]) | (part[b] ^ part[c]));
       if ((differ & (0u - static_cast<std::uint32_t>(face.alive()))) == 0) return;

@@ -45,6 +45,7 @@ void VertexSweep::run_over_all() {
   std::vector<std::uint32_t> candidates;
   candidates.reserve(kAtOnce);
   for (std::uint32_t v = stretch_.begin; v < stretch_.end && !state_.reached(); ++v) {
+    prefetch_stream(&vertices_[v]);
     if (!is_candidate(v)) continue;
     prefetch(mesh_.faces() + vertices_[v].leading / 4);
     candidates.push_back(v);
