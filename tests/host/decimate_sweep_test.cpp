@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -286,6 +287,35 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
     CHECK(state.faces + 1 >= rest);
     CHECK((state.faces <= rest) == (rest > 1));
   }
+}
+
+TEST_CASE("stretches are swept side by side as one after another", "[decimate]") {
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  IndexedFaceSet shape = test::grid(60, 400);
+  test::jitter(shape, 0.05f, 1);
+  const auto swept = [&](int threads) {
+    CollapseMesh mesh = test::collapse_mesh_of(test::fitted(shape));
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    const detail::Limits limits = any_angle();
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    state.part_faces = 1024;
+    state.stretch_faces = 2048;
+    tbb::task_arena(threads).execute([&] { detail::sweep_if_far(state); });
+    CHECK(state.faces < mesh.face_count() * 2 / 3);
+    std::vector<std::uint32_t> words;
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4)
+      for (std::size_t i = 0; i < 3; ++i) {
+        words.push_back(mesh.face(h).origin[i]);
+        words.push_back(mesh.face(h).twin[i]);
+      }
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+      words.push_back(mesh.vertices[v].leading);
+      words.push_back(std::bit_cast<std::uint32_t>(mesh.vertices[v].c));
+    }
+    return words;
+  };
+  const auto one = swept(1);
+  for (const int threads : {2, 8}) CHECK(swept(threads) == one);
 }
 
 TEST_CASE("decimation: what is far from its target is swept at first, on any number of threads alike",

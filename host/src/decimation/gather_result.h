@@ -126,7 +126,9 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size()),
       leading(result.positions.size(), kInvalid);
   parallel_ranges(alive_faces.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t kAhead = 16;
     for (std::size_t k = begin; k < end; ++k) {
+      prefetch(&mesh.face(4 * alive_faces[std::min(k + kAhead, end - 1)]));
       const CollapseMesh::Face& face = mesh.face(4 * alive_faces[k]);
       for (std::uint32_t i = 0; i < 3; ++i) {
         const std::uint32_t h = 3 * new_face[face.source] + i, t = face.twin[i];

@@ -10,26 +10,14 @@ namespace {
 
 constexpr std::uint32_t kMost = SweepBatch::kMost;
 
-// The first words of the neighbours' records, and what their quadrics say at their own places. Others may be
-// at work beyond the stretch: in the place of what is there stands the vertex itself.
+// The first words of the neighbours' records, and what their quadrics say at their own places.
 #if defined(VKMESH_HAS_CLONES)
-__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, const Stretch& stretch,
-                                                       SweepBatch& batch) {
-  using Eight = std::uint32_t __attribute__((vector_size(32)));
-  const Eight begin = Eight{} + stretch.begin, last = Eight{} + (stretch.end - stretch.begin - 1);
+__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     SweepBatch::Around& around = batch.around[i];
-    Eight ids;
-    __builtin_memcpy(&ids, batch.ring[i].vertex.data(), sizeof ids);
-    const auto outside = ids - begin > last;
-    ids = outside ? Eight{} + batch.vertex[i] : ids;
-    std::array<std::uint32_t, 8> inside;
-    __builtin_memcpy(inside.data(), &ids, sizeof ids);
-    const auto any = reinterpret_cast<std::uint64_t __attribute__((vector_size(32)))>(outside);
-    batch.is_inside[i] = (any[0] | any[1] | any[2] | any[3]) == 0 ? 1 : 0;
     std::array<const void*, 8> rows;
     for (std::size_t k = 0; k < 8; ++k) {
-      const CollapseVertex& neighbour = vertices[inside[k]];
+      const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k]];
       rows[k] = &neighbour;
       around.c[k] = neighbour.c;
     }
@@ -40,15 +28,13 @@ __attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* ver
 
 __attribute__((target("default")))
 #endif
-void gather_neighbours(const CollapseVertex* vertices, const Stretch& stretch, SweepBatch& batch) {
+void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     SweepBatch::Around& around = batch.around[i];
-    batch.is_inside[i] = batch.ring[i].is_inside(stretch) ? 1 : 0;
     for (std::size_t k = 0; k < SweepBatch::kMost; k += 4) {
       std::array<const void*, 4> rows;
       for (std::size_t j = 0; j < 4; ++j) {
-        const std::uint32_t v = batch.ring[i].vertex[k + j];
-        const CollapseVertex& neighbour = vertices[stretch.holds(v) ? v : batch.vertex[i]];
+        const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k + j]];
         rows[j] = &neighbour;
         around.c[k + j] = neighbour.c;
       }
@@ -57,25 +43,27 @@ void gather_neighbours(const CollapseVertex* vertices, const Stretch& stretch, S
   }
 }
 
-VKMESH_CLONES void find_best(const CollapseVertex* vertices, SweepBatch& batch) {
+VKMESH_CLONES void find_best(const CollapseVertex* vertices, const Stretch& stretch, SweepBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     const CollapseVertex& p = vertices[batch.vertex[i]];
     const SweepBatch::Ring& ring = batch.ring[i];
     const SweepBatch::Around& around = batch.around[i];
     const auto& a = p.a;
     const auto& b = p.b;
-    std::uint32_t least = SweepBatch::kNone, size = kMost;
+    std::uint32_t least = SweepBatch::kNone, outside = 0, size = kMost;
     for (std::uint32_t k = 0; k < kMost; ++k) {
       const float x = around.words[0][k] - p.position[0], y = around.words[1][k] - p.position[1],
                   z = around.words[2][k] - p.position[2];
       const float cost = quadric_value(a, b, p.c, x, y, z) + around.c[k];
       const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMost * kMost + k;
       least = least < bits ? least : bits;
+      outside |= stretch.holds(ring.vertex[k]) ? 0u : 1u;
       const std::uint32_t last = ring.edge[k] == p.leading ? k : kMost;
       size = size < last ? size : last;
     }
     batch.size[i] = size < kMost ? size + 1 : 0;
-    batch.best[i] = batch.is_inside[i] == 0 || size == kMost ? SweepBatch::kNone : least;
+    batch.is_inside[i] = 1 - outside;
+    batch.best[i] = outside != 0 || size == kMost ? SweepBatch::kNone : least;
   }
 }
 
@@ -86,8 +74,8 @@ void SweepBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> so
   count = some.size();
   std::copy(some.begin(), some.end(), vertex.begin());
   for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[some[i]].leading);
-  gather_neighbours(vertices, stretch, *this);
-  find_best(vertices, *this);
+  gather_neighbours(vertices, *this);
+  find_best(vertices, stretch, *this);
   for (std::size_t i = 0; i < count; ++i)
     for (auto* const words : {&ring[i].vertex, &ring[i].edge}) {
       std::array<std::uint32_t, kMost> first;

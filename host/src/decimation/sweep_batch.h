@@ -62,7 +62,6 @@ struct SweepBatch {
   };
 
   /// Takes up to kSize vertices that are not isolated, looks around each, and finds its neighbours' costs.
-  /// All are of the stretch, beyond which no vertex is read.
   void set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const Stretch& stretch);
 
   /// Of vertex i: whether it has a neighbour to go to, which one that is in its ring, and the sum of both

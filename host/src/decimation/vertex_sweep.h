@@ -17,8 +17,9 @@ namespace vkmesh::detail {
 /// many leaves hardly a trace in the end. Each vertex goes to where that costs least, where the surface is
 /// smooth, and those that stay do not move; the collapses that follow place them anew, by all the planes.
 ///
-/// It keeps to a stretch: only what has no neighbour elsewhere merges, and no face that has a corner
-/// elsewhere changes. Several stretches can be swept side by side.
+/// It keeps to a stretch. Where a vertex has a neighbour elsewhere, it neither goes nor takes another in: no
+/// face that has a corner elsewhere changes, and of a vertex next to those elsewhere nothing but where its
+/// fan begins. So several stretches can be swept side by side.
 class VertexSweep {
  public:
   /// No vertex goes at more than the cost `most`. `state`: of this stretch, or of all.
