@@ -114,14 +114,19 @@ class PartState {
   return static_cast<std::size_t>((std::uint64_t{i * 0x9e3779b1u} * all) >> 32);
 }
 
+/// See vertex_sweep.h.
+void sweep_if_far(DecimationState& state);
+
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 
 /// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does,
-/// fill(), step(), kStep and hold(), which tells what holds the candidates that are left.
+/// fill(), step(), kStep, hold(), which tells what holds the candidates that are left, and kMaySweep: whether
+/// the cheapest need not go first while much is to go.
 template <class Removals>
 Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const Limits& limits = state.limits;
+  if constexpr (Removals::kMaySweep) sweep_if_far(state);
   Removals removals(state);
   if (!state.reached()) removals.fill();
   const std::size_t first_faces = state.faces, first_vertices = state.vertices;

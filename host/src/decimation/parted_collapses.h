@@ -20,7 +20,6 @@
 #include "decimation/driver.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/territories.h"
-#include "decimation/vertex_sweep.h"
 #include "parallel.h"
 
 namespace vkmesh::detail {
@@ -33,9 +32,9 @@ template <class Placement, class Queue, bool kAttributes>
 class PartedCollapses {
  public:
   static constexpr std::size_t kStep = kRemovalsBetweenReports;
+  static constexpr bool kMaySweep = !Queue::kExact;
 
   explicit PartedCollapses(DecimationState& state) : state_(state) {
-    if constexpr (!Queue::kExact) sweep_if_far(state);
     const std::size_t count = part_count(), edges = 3 * state.mesh.face_count() / 2 + 1;
     if (count > 1) {
       labels_ = divide(state.mesh, count);

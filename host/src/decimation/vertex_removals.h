@@ -23,7 +23,6 @@
 #include "decimation/four_rows.h"
 #include "decimation/hole.h"
 #include "decimation/star.h"
-#include "decimation/vertex_sweep.h"
 
 namespace vkmesh::detail {
 
@@ -48,10 +47,10 @@ class VertexRemovals {
   }
 
   static constexpr std::size_t kStep = Queue::kExact ? 1 : 512;
+  static constexpr bool kMaySweep = !Queue::kExact;
 
   /// All vertices with their costs.
   void fill() {
-    if constexpr (!Queue::kExact) sweep_if_far(state_);
     std::array<std::uint32_t, kStars> ids;
     std::array<float, kStars> errors;
     std::size_t count = 0;
