@@ -22,6 +22,7 @@
 #include "decimation/edge_merger.h"
 #include "decimation/four_rows.h"
 #include "decimation/hole.h"
+#include "decimation/hole_stars.h"
 #include "decimation/star.h"
 
 namespace vkmesh::detail {
@@ -56,8 +57,9 @@ class VertexRemovals {
     std::size_t count = 0;
     const auto flush = [&] {
       errors.fill(kNone);
-      walk(std::span(ids).first(count), [](std::uint32_t) {});
-      evaluate([&](const HoleStar& star, std::size_t lane) { errors[index_of(star)] = rank(star, lane); });
+      stars_.walk(std::span(ids).first(count), [](std::uint32_t) {});
+      evaluate(
+          [&](const HoleStar& star, std::size_t lane) { errors[stars_.index_of(star)] = rank(star, lane); });
       for (std::size_t i = 0; i < count; ++i) {  // in the order of the input
         if (errors[i] < kNone)
           queue_.fill(ids[i], errors[i]);
@@ -84,7 +86,7 @@ class VertexRemovals {
   bool step() {
     std::array<std::uint32_t, kStars> taken;
     const std::size_t count = queue_.take(taken);
-    walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
+    stars_.walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
     due_.clear();
     std::array<Removal*, kStars> in_order{};
     evaluate([&](const HoleStar& star, std::size_t lane) {
@@ -92,7 +94,7 @@ class VertexRemovals {
       if (!(cost < kNone))
         park(star.vertex, Legality::kFoldOver);
       else if (queue_.is_due(star.vertex, cost))
-        in_order[index_of(star)] = &due_.emplace_back(removal_of(star, lane));
+        in_order[stars_.index_of(star)] = &due_.emplace_back(removal_of(star, lane));
       else
         queue_.insert(star.vertex, cost);
     });
@@ -119,7 +121,7 @@ class VertexRemovals {
         count(Legality::kLocked);
         if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.held_by_boundary;
       } else if (vertices_[v].has(CollapseVertex::kHasParked)) {
-        walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
+        stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
         evaluate([&](const HoleStar& star, std::size_t lane) {
           if (!(holes_.error[lane] < kNone)) return count(Legality::kFoldOver);
           Removal removal = removal_of(star, lane);
@@ -138,17 +140,6 @@ class VertexRemovals {
   static constexpr std::size_t kMost = HoleBatch::kMost;
   static_assert(CollapseMesh::kMostAtHole >= kMost + 1);
 
-  /// What leaves a vertex counter-clockwise, and where to. A boundary vertex has the apex at the end of the
-  /// last.
-  struct HoleStar {
-    std::uint32_t vertex, edges;  // edges: how many
-    bool closed;
-    std::array<std::uint32_t, kMost + 1> edge, target;
-    SeamSides sides;  // with attributes
-
-    [[nodiscard]] std::size_t neighbours() const { return closed ? edges : edges - 1; }
-    [[nodiscard]] std::span<const std::uint32_t> all_edges() const { return std::span(edge).first(edges); }
-  };
   using Triangle = std::array<std::uint8_t, 3>;
   /// With what closes the boundary; each before those beyond its new edges.
   struct Triangles {
@@ -174,82 +165,6 @@ class VertexRemovals {
     Removal* removal;
   };
 
-  /// Walks around these vertices, one step of each in turn: one waits for all. Their stars are stars_, in
-  /// order of their numbers of neighbours; has_too_many(v) is called for those of more than kMost.
-  template <class TooMany>
-  void walk(std::span<const std::uint32_t> ids, TooMany&& has_too_many) {
-    std::array<std::uint32_t, kStars> at, start, who;
-    for (const std::uint32_t v : ids) prefetch(&vertices_[v]);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      at[i] = start[i] = vertices_[ids[i]].leading;
-      who[i] = static_cast<std::uint32_t>(i);
-      prefetch(&mesh_.face(at[i]));
-      walked_[i].vertex = ids[i];
-      walked_[i].closed = true;
-    }
-    std::size_t left = ids.size();
-    for (std::uint32_t step = 0; step <= kMost && left > 0; ++step) {
-      const std::size_t now = left;
-      left = 0;
-      for (std::size_t i = 0; i < now; ++i) {
-        const std::uint32_t h = at[i], out = mesh_.around_vertex(h), v = mesh_.target(h);
-        HoleStar& star = walked_[who[i]];
-        prefetch(&vertices_[v]);
-        prefetch(&mesh_.face(out));
-        star.edge[step] = h;
-        star.target[step] = v;
-        star.edges = step + 1;
-        star.closed &= v != mesh_.apex();
-        at[left] = out;
-        start[left] = start[i];
-        who[left] = who[i];
-        left += out != start[i] ? 1 : 0;
-      }
-    }
-    for (std::size_t i = 0; i < left; ++i) walked_[who[i]].edges = kTooMany;
-    std::array<std::uint32_t, kMost + 2> first{};
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      HoleStar& star = walked_[i];
-      if (star.edges == kTooMany || star.neighbours() > kMost) {
-        star.edges = kTooMany;
-        has_too_many(star.vertex);
-        continue;
-      }
-      if (!star.closed) put_apex_last(star);
-      if constexpr (kAttributes) part(star);
-      ++first[star.neighbours() + 1];
-    }
-    for (std::size_t n = 1; n < first.size(); ++n) first[n] += first[n - 1];
-    first_ = first;
-    for (std::size_t i = 0; i < ids.size(); ++i)
-      if (walked_[i].edges != kTooMany)
-        order_[first[walked_[i].neighbours()]++] = static_cast<std::uint32_t>(i);
-  }
-
-  /// Of a star among the vertices that were walked around.
-  [[nodiscard]] std::size_t index_of(const HoleStar& star) const {
-    return static_cast<std::size_t>(&star - walked_.data());
-  }
-
-  void put_apex_last(HoleStar& star) const {
-    const auto end = star.target.begin() + star.edges;
-    begin_at(star, std::find(star.target.begin(), end, mesh_.apex()) - star.target.begin() + 1);
-  }
-  static void begin_at(HoleStar& star, std::ptrdiff_t i) {
-    std::rotate(star.target.begin(), star.target.begin() + i, star.target.begin() + star.edges);
-    std::rotate(star.edge.begin(), star.edge.begin() + i, star.edge.begin() + star.edges);
-  }
-
-  /// By the seam through the vertex, if any; the first edge is then of it.
-  void part(HoleStar& star) const {
-    const Wedges& wedges = state_.attributes->wedges();
-    const auto is_seam = [&](std::uint32_t h) { return wedges.is_seam(mesh_, h); };
-    if (wedges.on_seam(star.vertex))
-      begin_at(star,
-               std::find_if(star.edge.begin(), star.edge.begin() + star.edges, is_seam) - star.edge.begin());
-    star.sides = wedges.sides(mesh_, star.all_edges(), star.neighbours());
-  }
-
   /// At which edge the face is whose place the first new triangle takes: triangles take those of their side,
   /// those of side 1 first.
   [[nodiscard]] static std::size_t first_face([[maybe_unused]] const HoleStar& star) {
@@ -261,18 +176,19 @@ class VertexRemovals {
   /// Calls use(star, lane) for all stars that were walked, with their holes filled in that lane of holes_.
   template <class Use>
   void evaluate(Use&& use) {
+    const std::span<const std::uint32_t> order = stars_.in_order();
     for (std::size_t n = 1; n <= kMost; ++n)
-      for (std::size_t from = first_[n]; from < first_[n + 1]; from += HoleBatch::kLanes) {
-        const std::size_t count = std::min<std::size_t>(first_[n + 1] - from, HoleBatch::kLanes);
-        set(holes_, attributes_, std::span(order_).subspan(from, count));
-        const std::size_t next = from + count, left = first_[kMost + 1] - next;
-        for (std::size_t i = next; i < next + std::min(left, HoleBatch::kLanes); ++i) {
-          const HoleStar& star = walked_[order_[i]];
+      for (std::size_t from = stars_.first(n); from < stars_.first(n + 1); from += HoleBatch::kLanes) {
+        const std::size_t count = std::min(stars_.first(n + 1) - from, HoleBatch::kLanes);
+        set(holes_, attributes_, order.subspan(from, count));
+        const std::size_t next = from + count;
+        for (const std::uint32_t i : order.subspan(next, std::min(order.size() - next, HoleBatch::kLanes))) {
+          const HoleStar& star = stars_[i];
           prefetch(&vertices_[star.vertex]);
           for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.target[k]]);
         }
         fill(holes_, attributes_, n);
-        for (std::size_t lane = 0; lane < count; ++lane) use(walked_[order_[from + lane]], lane);
+        for (std::size_t lane = 0; lane < count; ++lane) use(stars_[order[from + lane]], lane);
       }
   }
 
@@ -292,7 +208,7 @@ class VertexRemovals {
            std::span<const std::uint32_t> walked) const {
     if constexpr (kAttributes)
       for (std::size_t lane = 0; lane < walked.size(); ++lane) {
-        const HoleStar& star = walked_[walked[lane]];
+        const HoleStar& star = stars_[walked[lane]];
         const std::size_t n = star.neighbours();
         state_.attributes->set(attributes, lane, star.all_edges(), n, star.sides);
         for (std::size_t b = 1; b < n; ++b)
@@ -304,7 +220,7 @@ class VertexRemovals {
       std::array<const HoleStar*, 4> stars;
       std::array<const void*, 4> rows;
       for (std::size_t i = 0; i < 4; ++i) {
-        stars[i] = &walked_[walked[std::min(lane + i, walked.size() - 1)]];
+        stars[i] = &stars_[walked[std::min(lane + i, walked.size() - 1)]];
         holes.closed[lane + i] = stars[i]->closed ? 1.0f : 0.0f;
       }
       const auto words = [&](std::size_t from) {
@@ -478,7 +394,7 @@ class VertexRemovals {
   /// Fills the hole again, without the edges that the mesh has already.
   void avoid_existing(Removal& removal) {
     const HoleStar& star = *removal.star;
-    const auto walked = static_cast<std::uint32_t>(index_of(star));
+    const auto walked = static_cast<std::uint32_t>(stars_.index_of(star));
     set(other_, other_attributes_, std::span(&walked, 1));
     while (bar_existing(star, removal.triangles)) {
       fill(other_, other_attributes_, star.neighbours());
@@ -741,16 +657,13 @@ class VertexRemovals {
     heir.weight += share * moved.weight;
   }
 
-  static constexpr std::uint32_t kTooMany = ~0u;
   static constexpr std::size_t kSearched = 32;
 
   DecimationState& state_;
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
   Queue queue_;
-  std::array<HoleStar, kStars> walked_;
-  std::array<std::uint32_t, kStars> order_;
-  std::array<std::uint32_t, kMost + 2> first_{};  // of each number of neighbours, in order_
+  HoleStars<kStars> stars_{mesh_, kAttributes ? &state_.attributes->wedges() : nullptr};
   HoleBatch holes_, other_;
   [[no_unique_address]] Attributes attributes_;  // at holes_
   [[no_unique_address]] Attributes other_attributes_;
