@@ -17,7 +17,7 @@
 
 #include "decimate_support.h"
 #include "decimation/collapse_order.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/sweep_batch.h"
 #include "decimation/vertex_sweep.h"

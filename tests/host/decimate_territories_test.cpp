@@ -17,12 +17,13 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_order.h"
 #include "decimation/collapse_queues.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/edge_batch.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/parted_collapses.h"
 #include "decimation/quadric_sums.h"
 #include "decimation/territories.h"
+#include "decimation/vertex_sweep.h"
 #include "support/shapes.h"
 
 namespace vkmesh {

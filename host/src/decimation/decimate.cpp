@@ -16,7 +16,7 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_order.h"
 #include "decimation/criteria.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/frame.h"
 #include "decimation/gather_result.h"
 #include "decimation/prune.h"

@@ -5,6 +5,7 @@
 #include "decimation/criteria.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/parted_collapses.h"
+#include "decimation/run_removals.h"
 #include "decimation/runs.h"
 
 namespace vkmesh::detail {

@@ -19,7 +19,7 @@
 #include "decimation/collapse_mesh.h"
 #include "decimation/collapse_queues.h"
 #include "decimation/criteria.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/edge_batch.h"
 #include "decimation/edge_merger.h"
 #include "decimation/edge_rim.h"

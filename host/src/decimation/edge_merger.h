@@ -13,7 +13,7 @@
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_distance.h"
 #include "decimation/collapse_mesh.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/edge_batch.h"
 #include "decimation/edge_rim.h"
 #include "decimation/face_turns.h"

@@ -19,7 +19,7 @@
 #include "collect.h"
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/frame.h"
 #include "parallel.h"
 

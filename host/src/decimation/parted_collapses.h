@@ -17,7 +17,7 @@
 #include "caches.h"
 #include "collect.h"
 #include "decimation/collapse_queues.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/territories.h"
 #include "parallel.h"
@@ -94,9 +94,9 @@ class PartedCollapses {
 
   struct Part {
     Part(const DecimationState& all, std::size_t edges, Territory territory)
-        : part(all), share(part.state, edges, territory) {}
+        : own(all), share(own.state, edges, territory) {}
 
-    PartState part;
+    PartState own;
     std::size_t collapses = 0;  // of the last round, of which the next will have about as many
     Share share;
   };
@@ -120,15 +120,15 @@ class PartedCollapses {
     parallel_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (; begin < end; ++begin) {
         Part& part = *by_work[next++];
-        part.part.start(faces, vertices);
+        part.own.start(faces, vertices);
         Worker& worker = workers_.local();
         worker.work_on(part.share);
         worker.run(last);
       }
     });
     for (const auto& part : parts_) {
-      part->collapses = part->part.state.outcome.collapses;
-      part->part.report_to(state_);
+      part->collapses = part->own.state.outcome.collapses;
+      part->own.report_to(state_);
     }
   }
 

@@ -4,7 +4,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/progress.h>
 
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 
 namespace vkmesh::detail {
 

@@ -24,10 +24,8 @@ class Territory {
   Territory(std::vector<std::uint8_t>& labels, std::uint8_t part) : labels_(labels.data()), part_(part) {}
 
   [[nodiscard]] bool is_part() const { return part_ != kSeam; }
-  /// Of a part, or everywhere if there are none.
-  [[nodiscard]] bool holds(std::uint32_t v) const {
-    return labels_ == nullptr || labels_[v] == (part_ | kInner);
-  }
+  /// Of a part.
+  [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (part_ | kInner); }
 
   [[nodiscard]] bool is_seam() const { return labels_ != nullptr && !is_part(); }
   /// Of the seam: a vertex has absorbed another, which had this ring.

@@ -2,6 +2,7 @@
 
 #include "decimation/collapse_queues.h"
 #include "decimation/criteria.h"
+#include "decimation/run_removals.h"
 #include "decimation/runs.h"
 
 namespace vkmesh::detail {

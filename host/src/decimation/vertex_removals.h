@@ -18,7 +18,7 @@
 #include "decimation/attribute_quadrics.h"
 #include "decimation/collapse_mesh.h"
 #include "decimation/criteria.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/four_rows.h"
 #include "decimation/hole.h"

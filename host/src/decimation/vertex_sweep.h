@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "decimation/collapse_mesh.h"
-#include "decimation/driver.h"
+#include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/sweep_batch.h"
 

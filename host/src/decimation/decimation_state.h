@@ -1,13 +1,11 @@
-// What every way to decimate shares: the limits, what has been done, and the run until a limit is met.
+// What every way to decimate shares: the limits, and what has been done.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <vkmesh/decimation/decimate.h>
@@ -114,47 +112,6 @@ class PartState {
   return static_cast<std::size_t>((std::uint64_t{i * 0x9e3779b1u} * all) >> 32);
 }
 
-/// See vertex_sweep.h.
-void sweep_if_far(DecimationState& state);
-
 constexpr std::size_t kRemovalsBetweenReports = 8192;
-
-/// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does,
-/// fill(), step(), kStep, hold(), which tells what holds the candidates that are left, and kMaySweep: whether
-/// the cheapest need not go first while much is to go.
-template <class Removals>
-Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
-  const Limits& limits = state.limits;
-  if constexpr (Removals::kMaySweep) sweep_if_far(state);
-  Removals removals(state);
-  if (!state.reached()) removals.fill();
-  const std::size_t first_faces = state.faces, first_vertices = state.vertices;
-  std::size_t steps = 0;
-  while (!state.reached()) {
-    if (steps++ % (kRemovalsBetweenReports / Removals::kStep) == 0) {
-      if (progress) {
-        const auto share = [](std::size_t first, std::size_t now, std::size_t last) {
-          return first <= last ? 1.0 : static_cast<double>(first - now) / static_cast<double>(first - last);
-        };
-        const double done = std::max(share(first_faces, state.faces, limits.faces),
-                                     share(first_vertices, state.vertices, limits.vertices));
-        if (!progress(std::min(done, 1.0))) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
-      }
-      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >= limits.seconds) {
-        state.outcome.stop = DecimateStop::kTimeLimit;
-        break;
-      }
-    }
-    if (!removals.step()) {
-      removals.hold();
-      const bool by_error = state.outcome.held[static_cast<std::size_t>(Legality::kError)] > 0;
-      state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
-      break;
-    }
-  }
-  if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
-  return std::move(state.outcome);
-}
 
 }  // namespace vkmesh::detail
