@@ -5,22 +5,22 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
-#include <vkmesh/engine/bilateral_smoothing.h>
-#include <vkmesh/engine/collapse_costs.h>
-#include <vkmesh/engine/context.h>
-#include <vkmesh/engine/curvatures.h>
-#include <vkmesh/engine/device_mesh.h>
-#include <vkmesh/engine/dihedral_angles.h>
-#include <vkmesh/engine/laplacian_smoothing.h>
-#include <vkmesh/engine/recorder.h>
-#include <vkmesh/engine/swap_scores.h>
-#include <vkmesh/engine/triangle_normals.h>
-#include <vkmesh/engine/vertex_normals.h>
+#include <vkmesh/engine/core/context.h>
+#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/mesh/device_mesh.h>
+#include <vkmesh/engine/passes/bilateral_smoothing.h>
+#include <vkmesh/engine/passes/collapse_costs.h>
+#include <vkmesh/engine/passes/curvatures.h>
+#include <vkmesh/engine/passes/dihedral_angles.h>
+#include <vkmesh/engine/passes/laplacian_smoothing.h>
+#include <vkmesh/engine/passes/swap_scores.h>
+#include <vkmesh/engine/passes/triangle_normals.h>
+#include <vkmesh/engine/passes/vertex_normals.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "bench/contestants.h"
-#include "device.h"
-#include "params.h"
+#include "core/device.h"
+#include "passes/params.h"
 
 namespace vkmesh::bench {
 namespace {

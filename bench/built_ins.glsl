@@ -4,7 +4,7 @@
 #ifndef VKMESH_BUILT_INS_GLSL
 #define VKMESH_BUILT_INS_GLSL
 
-#include "vkmesh/passes/arithmetic_constants.h"
+#include "vkmesh/math/arithmetic_constants.h"
 
 float zero_below(float x, float limit) { return x; }
 vec3 zero_below(vec3 v, float limit) { return v; }

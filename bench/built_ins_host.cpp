@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/passes/arithmetic.h>
+#include <vkmesh/math/arithmetic.h>
 
 #include "bench/contestants.h"
-#include "passes/clones.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh::bench {
 namespace {

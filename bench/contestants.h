@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include <vkmesh/half_edge_mesh.h>
-#include <vkmesh/indexed_face_set.h>
-#include <vkmesh/result.h>
-#include <vkmesh/vec.h>
+#include <vkmesh/base/result.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::bench {
 

@@ -2,12 +2,12 @@
 #include <memory>
 #include <utility>
 
-#include <vkmesh/consolidate.h>
-#include <vkmesh/engine/context.h>
-#include <vkmesh/engine/device_mesh.h>
-#include <vkmesh/engine/laplacian_smoothing.h>
-#include <vkmesh/engine/recorder.h>
-#include <vkmesh/engine/vertex_normals.h>
+#include <vkmesh/engine/core/context.h>
+#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/mesh/device_mesh.h>
+#include <vkmesh/engine/passes/laplacian_smoothing.h>
+#include <vkmesh/engine/passes/vertex_normals.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "bench/contestants.h"
 

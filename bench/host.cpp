@@ -4,11 +4,11 @@
 
 #include <tbb/task_arena.h>
 
-#include <vkmesh/consolidate.h>
 #include <vkmesh/decimation/decimate.h>
-#include <vkmesh/node_neighbours.h>
+#include <vkmesh/mesh/node_neighbours.h>
 #include <vkmesh/passes/laplacian_smoothing.h>
 #include <vkmesh/passes/vertex_normals.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "bench/contestants.h"
 

@@ -8,10 +8,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <vkmesh/analysis/surface_distance.h>
+#include <vkmesh/analysis/topology.h>
 #include <vkmesh/io/mesh_io.h>
-#include <vkmesh/surface_distance.h>
-#include <vkmesh/topology.h>
-#include <vkmesh/triangulate.h>
+#include <vkmesh/mesh/triangulate.h>
 
 #include "bench/contestants.h"
 #include "bench/machine.h"

@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <vkmesh/consolidate.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "bench/contestants.h"
 

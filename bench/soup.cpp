@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
-#include <vkmesh/weld.h>
+#include <vkmesh/repair/consolidate.h>
+#include <vkmesh/repair/weld.h>
 
 #include "bench/contestants.h"
 

@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include <vkmesh/result.h>
+#include <vkmesh/base/result.h>
 
-#include "common.h"
+#include "job/common.h"
 
 namespace vkmesh::cli {
 

@@ -1,6 +1,6 @@
-# vkmesh_compile_shaders(TARGET SHADER... [DEFINES NAME[=TEXT]...]): compiles each shaders/SHADER.comp with glslangValidator into the header
-# shaders/SHADER.spv.h of the build tree, an array of 32-bit words named k_SHADER_spirv, and lets TARGET include it.
-# A name with an extension, SHADER.vert, is that file; its header is SHADER_vert.spv.h, its array k_SHADER_vert_spirv.
+# vkmesh_compile_shaders(TARGET SHADER... [DEFINES NAME[=TEXT]...]): compiles each shaders/SHADER.comp (a folder and a name) with glslangValidator into the header
+# shaders/NAME.spv.h of the build tree, an array of 32-bit words named k_NAME_spirv, and lets TARGET include it.
+# A name with an extension, SHADER.vert, is that file; its header is NAME_vert.spv.h, its array k_NAME_vert_spirv.
 find_program(VKMESH_GLSLANG glslangValidator REQUIRED)
 
 function(vkmesh_compile_shaders target)
@@ -10,9 +10,11 @@ function(vkmesh_compile_shaders target)
   set(output_dir ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   set(headers)
   foreach(name IN LISTS arg_UNPARSED_ARGUMENTS)
-    string(REPLACE "." "_" shader ${name})
+    get_filename_component(shader ${name} NAME)
+    get_filename_component(extension ${name} EXT)
+    string(REPLACE "." "_" shader ${shader})
     set(source ${source_dir}/${name})
-    if(shader STREQUAL name)
+    if(NOT extension)
       string(APPEND source .comp)
     endif()
     set(header ${output_dir}/${shader}.spv.h)

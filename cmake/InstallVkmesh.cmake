@@ -2,8 +2,8 @@
 include(CMakePackageConfigHelpers)
 
 set(vkmesh_package ${CMAKE_INSTALL_LIBDIR}/cmake/vkmesh)
-set(vkmesh_targets vkmesh_host)
-install(DIRECTORY host/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set(vkmesh_targets vkmesh_host vkmesh_picture)
+install(DIRECTORY host/include/ picture/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(VKMESH_VULKAN)
   list(APPEND vkmesh_targets vkmesh_engine)
   install(DIRECTORY engine/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

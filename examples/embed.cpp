@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
-#include <vkmesh/engine/vertex_normals.h>
+#include <vkmesh/engine/passes/vertex_normals.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/repair/consolidate.h>
 
 using namespace vkmesh;
 

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
 #include <vkmesh/decimation/decimate.h>
-#include <vkmesh/engine/dihedral_angles.h>
-#include <vkmesh/engine/laplacian_smoothing.h>
-#include <vkmesh/engine/vertex_normals.h>
+#include <vkmesh/engine/passes/dihedral_angles.h>
+#include <vkmesh/engine/passes/laplacian_smoothing.h>
+#include <vkmesh/engine/passes/vertex_normals.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/repair/consolidate.h>
 
 using namespace vkmesh;
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <vkmesh/indexed_face_set.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::test {
 

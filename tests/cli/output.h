@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <vkmesh/indexed_face_set.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::test {
 

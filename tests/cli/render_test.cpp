@@ -5,7 +5,8 @@
 
 #include <catch2/catch.hpp>
 
-#include <vkmesh/picture.h>
+#include <vkmesh/picture/png.h>
+#include <vkmesh/view/picture.h>
 
 #include "meshes.h"
 #include "program.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "check.h"
 #include "face_set.h"

@@ -17,14 +17,14 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
+#include <vkmesh/analysis/surface_distance.h>
+#include <vkmesh/analysis/topology.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/decimation/decimate_index_buffer.h>
-#include <vkmesh/surface_distance.h>
-#include <vkmesh/topology.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "check.h"
-#include "decimation/collapse_order.h"
+#include "decimation/order/collapse_order.h"
 #include "random_manifold.h"
 
 namespace vkmesh::fuzz {

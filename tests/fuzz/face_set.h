@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <vkmesh/indexed_face_set.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::fuzz {
 

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/consolidate.h>
-#include <vkmesh/indexed_face_set.h>
+#include <vkmesh/mesh/indexed_face_set.h>
+#include <vkmesh/repair/consolidate.h>
 
 namespace vkmesh::fuzz {
 

@@ -14,7 +14,7 @@
 #include <vkmesh/io/mesh_io.h>
 
 #include "check.h"
-#include "io/ply.h"
+#include "io/ply/ply.h"
 
 namespace vkmesh::fuzz {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <vkmesh/engine/context.h>
+#include <vkmesh/engine/core/context.h>
 
 namespace vkmesh::test {
 

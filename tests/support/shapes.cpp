@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <vkmesh/consolidate.h>
+#include <vkmesh/repair/consolidate.h>
 
 namespace vkmesh::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-#include <vkmesh/half_edge_mesh.h>
-#include <vkmesh/indexed_face_set.h>
-#include <vkmesh/vec.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::test {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include <vkmesh/indexed_face_set.h>
-#include <vkmesh/vec.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::test {
 

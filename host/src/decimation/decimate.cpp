@@ -8,23 +8,23 @@
 #include <optional>
 #include <utility>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/decimation/decimate.h>
 
-#include "caches.h"
-#include "catching.h"
-#include "decimation/attribute_quadrics.h"
-#include "decimation/collapse_mesh.h"
-#include "decimation/collapse_order.h"
-#include "decimation/criteria.h"
+#include "base/parallel.h"
+#include "base/prefetch.h"
+#include "decimation/cost/attribute_quadrics.h"
 #include "decimation/decimation_state.h"
-#include "decimation/frame.h"
 #include "decimation/gather_result.h"
-#include "decimation/prune.h"
-#include "decimation/quadric_sums.h"
+#include "decimation/legality/criteria.h"
+#include "decimation/legality/wedges.h"
+#include "decimation/order/collapse_order.h"
 #include "decimation/runs.h"
-#include "decimation/spatial_order.h"
-#include "decimation/wedges.h"
-#include "parallel.h"
+#include "decimation/setup/frame.h"
+#include "decimation/setup/initial_quadrics.h"
+#include "decimation/setup/prune.h"
+#include "mesh/edit/collapse_mesh.h"
+#include "spatial/morton_order.h"
 
 namespace vkmesh {
 namespace {

@@ -4,9 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/decimation/decimate_index_buffer.h>
-
-#include "catching.h"
 
 namespace vkmesh {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <vkmesh/decimation/decimate.h>
 
-#include "decimation/collapse_mesh.h"
+#include "mesh/edit/collapse_mesh.h"
 
 namespace vkmesh::detail {
 

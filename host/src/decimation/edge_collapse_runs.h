@@ -1,10 +1,10 @@
 // Which queue and placement edges are collapsed with.
 #pragma once
 
-#include "decimation/collapse_queues.h"
-#include "decimation/criteria.h"
 #include "decimation/edge_collapses.h"
-#include "decimation/parted_collapses.h"
+#include "decimation/legality/criteria.h"
+#include "decimation/order/collapse_queues.h"
+#include "decimation/parallel/partitioned_collapses.h"
 #include "decimation/run_removals.h"
 #include "decimation/runs.h"
 

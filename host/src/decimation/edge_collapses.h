@@ -12,22 +12,22 @@
 #include <vector>
 
 #include <vkmesh/decimation/decimate.h>
-#include <vkmesh/handles.h>
+#include <vkmesh/mesh/handles.h>
 
-#include "caches.h"
-#include "decimation/attribute_quadrics.h"
-#include "decimation/collapse_mesh.h"
-#include "decimation/collapse_queues.h"
-#include "decimation/criteria.h"
+#include "base/parallel.h"
+#include "base/prefetch.h"
+#include "decimation/cost/attribute_quadrics.h"
+#include "decimation/cost/edge_batch.h"
+#include "decimation/cost/placements.h"
 #include "decimation/decimation_state.h"
-#include "decimation/edge_batch.h"
 #include "decimation/edge_merger.h"
-#include "decimation/edge_rim.h"
-#include "decimation/pending_edges.h"
-#include "decimation/placements.h"
-#include "decimation/star.h"
-#include "decimation/territories.h"
-#include "parallel.h"
+#include "decimation/legality/criteria.h"
+#include "decimation/legality/local_change.h"
+#include "decimation/order/collapse_queues.h"
+#include "decimation/order/pending_edges.h"
+#include "decimation/parallel/partition.h"
+#include "mesh/edit/collapse_mesh.h"
+#include "mesh/edit/edge_rim.h"
 
 namespace vkmesh::detail {
 

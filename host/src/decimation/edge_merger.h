@@ -10,13 +10,13 @@
 
 #include <vkmesh/decimation/decimate.h>
 
-#include "decimation/attribute_quadrics.h"
-#include "decimation/collapse_distance.h"
-#include "decimation/collapse_mesh.h"
+#include "decimation/cost/attribute_quadrics.h"
+#include "decimation/cost/edge_batch.h"
+#include "decimation/cost/tangential_drift.h"
 #include "decimation/decimation_state.h"
-#include "decimation/edge_batch.h"
-#include "decimation/edge_rim.h"
-#include "decimation/face_turns.h"
+#include "decimation/legality/fold_over.h"
+#include "mesh/edit/collapse_mesh.h"
+#include "mesh/edit/edge_rim.h"
 
 namespace vkmesh::detail {
 

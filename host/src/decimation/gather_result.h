@@ -13,15 +13,15 @@
 #include <vector>
 
 #include <vkmesh/decimation/decimate.h>
-#include <vkmesh/handles.h>
+#include <vkmesh/mesh/handles.h>
 
-#include "caches.h"
-#include "collect.h"
-#include "decimation/attribute_quadrics.h"
-#include "decimation/collapse_mesh.h"
+#include "base/parallel.h"
+#include "base/parallel_filter.h"
+#include "base/prefetch.h"
+#include "decimation/cost/attribute_quadrics.h"
 #include "decimation/decimation_state.h"
-#include "decimation/frame.h"
-#include "parallel.h"
+#include "decimation/setup/frame.h"
+#include "mesh/edit/collapse_mesh.h"
 
 namespace vkmesh::detail {
 

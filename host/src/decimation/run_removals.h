@@ -9,7 +9,7 @@
 #include <vkmesh/decimation/decimate.h>
 
 #include "decimation/decimation_state.h"
-#include "decimation/vertex_sweep.h"
+#include "decimation/parallel/coarsen.h"
 
 namespace vkmesh::detail {
 

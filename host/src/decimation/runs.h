@@ -1,8 +1,8 @@
 // Decimation until a limit is met, by each kind of removal: compiled one by one, since each takes long.
 #pragma once
 
+#include <vkmesh/base/progress.h>
 #include <vkmesh/decimation/decimate.h>
-#include <vkmesh/progress.h>
 
 #include "decimation/decimation_state.h"
 

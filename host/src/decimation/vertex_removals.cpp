@@ -1,7 +1,7 @@
 #include "decimation/vertex_removals.h"
 
-#include "decimation/collapse_queues.h"
-#include "decimation/criteria.h"
+#include "decimation/legality/criteria.h"
+#include "decimation/order/collapse_queues.h"
 #include "decimation/run_removals.h"
 #include "decimation/runs.h"
 

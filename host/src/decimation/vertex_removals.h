@@ -13,17 +13,17 @@
 
 #include <glm/geometric.hpp>
 
-#include <vkmesh/handles.h>
+#include <vkmesh/mesh/handles.h>
 
-#include "decimation/attribute_quadrics.h"
-#include "decimation/collapse_mesh.h"
-#include "decimation/criteria.h"
+#include "decimation/cost/attribute_quadrics.h"
+#include "decimation/cost/retriangulation.h"
 #include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
-#include "decimation/four_rows.h"
-#include "decimation/hole.h"
-#include "decimation/hole_stars.h"
-#include "decimation/star.h"
+#include "decimation/legality/criteria.h"
+#include "decimation/legality/local_change.h"
+#include "decimation/vertex_stars.h"
+#include "mesh/edit/collapse_mesh.h"
+#include "simd/transpose.h"
 
 namespace vkmesh::detail {
 

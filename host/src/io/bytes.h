@@ -15,8 +15,8 @@
 
 #include <zlib.h>
 
-#include <vkmesh/progress.h>
-#include <vkmesh/result.h>
+#include <vkmesh/base/progress.h>
+#include <vkmesh/base/result.h>
 
 namespace vkmesh::detail {
 

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include <vkmesh/indexed_face_set.h>
+#include <vkmesh/base/progress.h>
+#include <vkmesh/base/result.h>
 #include <vkmesh/io/mesh_io.h>
-#include <vkmesh/progress.h>
-#include <vkmesh/result.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 #include "io/bytes.h"
 

@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/io/mesh_io.h>
-#include <vkmesh/weld.h>
+#include <vkmesh/repair/weld.h>
 
-#include "catching.h"
 #include "io/bytes.h"
 #include "io/formats.h"
 #include "io/text.h"

@@ -1,8 +1,8 @@
 #include "passes/bilateral_blocks.h"
 
-#include <vkmesh/passes/arithmetic.h>
+#include <vkmesh/math/arithmetic.h>
 
-#include "passes/clones.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh::detail {
 namespace {

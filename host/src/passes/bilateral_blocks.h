@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <vkmesh/vec.h>
+#include <vkmesh/math/vec.h>
 
 namespace vkmesh::detail {
 

@@ -1,12 +1,11 @@
-#include "passes/bilateral_grid.h"
-
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include <vkmesh/passes/arithmetic.h>
+#include <vkmesh/math/arithmetic.h>
+#include <vkmesh/passes/detail/bilateral_grid.h>
 
-#include "parallel.h"
+#include "base/parallel.h"
 
 namespace vkmesh::detail {
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <string>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/passes/bilateral_smoothing.h>
+#include <vkmesh/passes/detail/bilateral_grid.h>
 
-#include "catching.h"
-#include "parallel.h"
+#include "base/parallel.h"
+#include "math/vector_kernels.h"
 #include "passes/bilateral_blocks.h"
-#include "passes/bilateral_grid.h"
-#include "passes/blocks.h"
 #include "passes/pass_input.h"
 
 namespace vkmesh {

@@ -1,15 +1,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/passes/collapse_costs.h>
+#include <vkmesh/passes/detail/raw_measures.h>
 
-#include "catching.h"
-#include "large_pages.h"
-#include "parallel.h"
-#include "passes/clones.h"
-#include "passes/edge_values.h"
+#include "base/huge_pages.h"
+#include "base/parallel.h"
 #include "passes/pass_input.h"
-#include "passes/raw_measures.h"
+#include "passes/per_edge_values.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh {
 namespace {

@@ -2,13 +2,13 @@
 #include <array>
 #include <utility>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/passes/curvatures.h>
 
-#include "catching.h"
-#include "large_pages.h"
-#include "passes/clones.h"
+#include "base/huge_pages.h"
 #include "passes/pass_input.h"
-#include "passes/ring_groups.h"
+#include "passes/valence_groups.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh {
 namespace {

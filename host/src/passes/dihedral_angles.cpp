@@ -2,14 +2,14 @@
 #include <array>
 #include <cmath>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/passes/dihedral_angles.h>
 
-#include "caches.h"
-#include "catching.h"
-#include "large_array.h"
-#include "large_pages.h"
-#include "parallel.h"
-#include "passes/blocks.h"
+#include "base/huge_pages.h"
+#include "base/large_array.h"
+#include "base/parallel.h"
+#include "base/prefetch.h"
+#include "math/vector_kernels.h"
 #include "passes/pass_input.h"
 #include "passes/raw_normals.h"
 

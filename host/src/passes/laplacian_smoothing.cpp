@@ -3,16 +3,16 @@
 #include <cstring>
 #include <utility>
 
+#include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/passes/detail/smoothing_input.h>
 #include <vkmesh/passes/laplacian_smoothing.h>
 
-#include "caches.h"
-#include "catching.h"
-#include "large_array.h"
-#include "large_pages.h"
-#include "passes/clones.h"
+#include "base/huge_pages.h"
+#include "base/large_array.h"
+#include "base/prefetch.h"
 #include "passes/pass_input.h"
-#include "passes/ring_groups.h"
-#include "passes/smoothing_input.h"
+#include "passes/valence_groups.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh {
 namespace {

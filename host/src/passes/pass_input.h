@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-#include <vkmesh/half_edge_mesh.h>
-#include <vkmesh/passes/arithmetic.h>
-#include <vkmesh/result.h>
+#include <vkmesh/base/result.h>
+#include <vkmesh/math/arithmetic.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
 
 namespace vkmesh::detail {
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include <vkmesh/half_edge_mesh.h>
-#include <vkmesh/vec.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
 
 namespace vkmesh::detail {
 

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/passes/detail/raw_measures.h>
 #include <vkmesh/passes/restore_volume.h>
 
-#include "catching.h"
-#include "parallel.h"
+#include "base/parallel.h"
 #include "passes/pass_input.h"
-#include "passes/raw_measures.h"
 
 namespace vkmesh {
 namespace {

@@ -2,14 +2,14 @@
 #include <array>
 #include <vector>
 
+#include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/passes/detail/raw_measures.h>
 #include <vkmesh/passes/surface_measures.h>
 
-#include "catching.h"
-#include "large_pages.h"
-#include "parallel.h"
-#include "passes/clones.h"
+#include "base/huge_pages.h"
+#include "base/parallel.h"
 #include "passes/pass_input.h"
-#include "passes/raw_measures.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh {
 namespace {

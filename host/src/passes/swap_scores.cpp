@@ -1,11 +1,11 @@
 #include <algorithm>
 
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/passes/swap_scores.h>
 
-#include "catching.h"
-#include "passes/clones.h"
-#include "passes/edge_values.h"
 #include "passes/pass_input.h"
+#include "passes/per_edge_values.h"
+#include "simd/target_clones.h"
 
 namespace vkmesh {
 namespace {

@@ -1,9 +1,9 @@
+#include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/passes/triangle_normals.h>
 
-#include "catching.h"
-#include "large_pages.h"
-#include "parallel.h"
-#include "passes/blocks.h"
+#include "base/huge_pages.h"
+#include "base/parallel.h"
+#include "math/vector_kernels.h"
 #include "passes/pass_input.h"
 #include "passes/raw_normals.h"
 

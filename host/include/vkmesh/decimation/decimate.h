@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include <vkmesh/half_edge_mesh.h>
+#include <vkmesh/analysis/surface_distance.h>
+#include <vkmesh/base/progress.h>
+#include <vkmesh/base/result.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
 #include <vkmesh/passes/collapse_costs.h>
-#include <vkmesh/progress.h>
-#include <vkmesh/result.h>
-#include <vkmesh/surface_distance.h>
-#include <vkmesh/vec.h>
 
 namespace vkmesh {
 

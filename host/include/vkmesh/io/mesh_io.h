@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
-#include <vkmesh/indexed_face_set.h>
-#include <vkmesh/polygon_soup.h>
-#include <vkmesh/progress.h>
-#include <vkmesh/result.h>
+#include <vkmesh/base/progress.h>
+#include <vkmesh/base/result.h>
+#include <vkmesh/mesh/indexed_face_set.h>
+#include <vkmesh/mesh/polygon_soup.h>
 
 namespace vkmesh {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include <vkmesh/half_edge_mesh.h>
-#include <vkmesh/result.h>
-#include <vkmesh/vec.h>
+#include <vkmesh/base/result.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
 
 namespace vkmesh {
 

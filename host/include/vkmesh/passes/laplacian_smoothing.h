@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include <vkmesh/node_neighbours.h>
-#include <vkmesh/progress.h>
-#include <vkmesh/result.h>
-#include <vkmesh/vec.h>
+#include <vkmesh/base/progress.h>
+#include <vkmesh/base/result.h>
+#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/node_neighbours.h>
 
 namespace vkmesh {
 

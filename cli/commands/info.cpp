@@ -1,0 +1,207 @@
+// vkmesh info: counts, defects and topology of a mesh.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <vkmesh/analysis/topology.h>
+
+#include "commands.h"
+#include "passes/backend.h"
+
+namespace vkmesh::cli {
+namespace {
+
+/// Sum of the areas of the faces, each by its Newell vector. O(corners).
+double surface_area(const IndexedFaceSet& mesh) {
+  double sum = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    if (face.size() < 3) continue;
+    const DVec3 base(mesh.points[face[0]]);
+    DVec3 twice(0.0);
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const DVec3 a = DVec3(mesh.points[face[i]]) - base;
+      const DVec3 b = DVec3(mesh.points[face[i + 1]]) - base;
+      twice += DVec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    }
+    sum += std::sqrt(twice.x * twice.x + twice.y * twice.y + twice.z * twice.z) / 2;
+  }
+  return sum;
+}
+
+/// The signed volume inside a closed, oriented surface: a sum over the fans of its faces. O(corners).
+double enclosed_volume(const IndexedFaceSet& mesh) {
+  if (mesh.points.empty()) return 0;
+  const DVec3 origin(mesh.points[0]);
+  double sum = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    const DVec3 a = DVec3(mesh.points[face[0]]) - origin;
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const DVec3 b = DVec3(mesh.points[face[i]]) - origin, c = DVec3(mesh.points[face[i + 1]]) - origin;
+      sum += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+    }
+  }
+  return sum / 6;
+}
+
+Json to_json(const Topology& t) {
+  return {{"points", t.points},
+          {"edges", t.edges},
+          {"faces", t.faces},
+          {"boundary_edges", t.boundary_edges},
+          {"boundary_loops", t.boundary_loops},
+          {"non_manifold_edges", t.non_manifold_edges},
+          {"non_manifold_vertices", t.non_manifold_vertices},
+          {"misoriented_edges", t.misoriented_edges},
+          {"euler_characteristic", t.euler_characteristic()},
+          {"genus", t.genus ? Json(*t.genus) : Json(nullptr)},
+          {"orientable", t.orientable},
+          {"oriented", t.oriented()},
+          {"closed", t.closed()},
+          {"manifold", t.manifold()}};
+}
+
+/// What a surface is, in a few words.
+std::string described(const Topology& t) {
+  return std::string(t.closed() ? "closed" : count_of(t.boundary_loops, "boundary loop")) + ", " +
+         (t.manifold() ? "" : "not manifold, ") + (t.orientable ? "" : "not orientable, ") +
+         "Euler characteristic " + std::to_string(t.euler_characteristic()) +
+         (t.genus ? ", genus " + std::to_string(*t.genus) : "");
+}
+
+/// What makes the surface no manifold, or its faces disagree.
+std::string defects_of(const Topology& t, const ElementDefects& d) {
+  std::string text;
+  const auto add = [&](std::size_t n, const char* one, const char* many) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + count_of(n, one, many);
+  };
+  add(d.degenerate_faces, "degenerate face", "degenerate faces");
+  add(d.duplicate_faces, "duplicate face", "duplicate faces");
+  add(t.non_manifold_edges, "edge with three or more faces", "edges with three or more faces");
+  add(t.non_manifold_vertices, "point where separate fans of faces meet",
+      "points where separate fans of faces meet");
+  add(t.misoriented_edges, "edge whose two faces disagree in orientation",
+      "edges whose two faces disagree in orientation");
+  return text;
+}
+
+std::string triple(const Vec3& p) {
+  return "(" + brief(static_cast<double>(p.x)) + ", " + brief(static_cast<double>(p.y)) + ", " +
+         brief(static_cast<double>(p.z)) + ")";
+}
+
+std::string listed(const std::vector<Channel>& channels, const char* of) {
+  std::string text;
+  for (const Channel& channel : channels) text += (text.empty() ? "" : ", ") + channel.name;
+  return text.empty() ? text : text + " of " + of;
+}
+
+Result<void> run(Job& job) {
+  use_host(job);
+  VKMESH_TRY(const IndexedFaceSet mesh, job.read());
+  VKMESH_TRY(const SurfaceTopology topology,
+             job.timed("consolidate", [&] { return surface_topology(mesh); }));
+  VKMESH_TRY(const ElementDefects defects, job.timed("consolidate", [&] { return element_defects(mesh); }));
+  const Topology& whole = topology.whole;
+  Json& result = job.json()["result"];
+
+  std::size_t largest = 0, triangles = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    largest = std::max(largest, mesh.face(f).size());
+    triangles += mesh.face(f).size() == 3 ? 1u : 0u;
+  }
+  if (mesh.face_count() == 0)
+    job.row("faces", "none: a point cloud");
+  else if (triangles == mesh.face_count())
+    job.row("faces", "triangles");
+  else
+    job.row("faces", count_of(triangles, "triangle") + ", " + grouped(mesh.face_count() - triangles) +
+                         " of other sizes, the largest of " + count_of(largest, "corner"));
+  std::string attributes;
+  for (const std::string& part :
+       {listed(mesh.point_channels, "points"), listed(mesh.corner_channels, "corners"),
+        listed(mesh.face_channels, "faces")})
+    if (!part.empty()) attributes += (attributes.empty() ? "" : "; ") + part;
+  job.row("attributes", attributes.empty() ? "none" : attributes);
+  job.row("edges", grouped(whole.edges) + ", " + grouped(whole.boundary_edges) + " on the boundary");
+  if (defects.isolated_points > 0)
+    job.row("isolated", count_of(defects.isolated_points, "point") + " that no face uses");
+  if (defects.duplicate_points > 0)
+    job.row("duplicates", count_of(defects.duplicate_points, "point") +
+                              " with the coordinates of another (convert --weld 0 joins them)");
+
+  // The file as it was read: its faces all count, the surface is that of the sound ones.
+  result = to_json(whole);
+  result["points"] = mesh.points.size();
+  result["faces"] = mesh.face_count();
+  result["triangles"] = triangles;
+  result["largest_face"] = largest;
+  result["components"] = topology.components.size();
+  const bool manifold = whole.manifold() && defects.degenerate_faces == 0;
+  result["manifold"] = manifold;
+  result["degenerate_faces"] = defects.degenerate_faces;
+  result["duplicate_faces"] = defects.duplicate_faces;
+  result["duplicate_points"] = defects.duplicate_points;
+  result["isolated_points"] = defects.isolated_points;
+  result["component_topology"] = Json::array();
+  for (const Topology& t : topology.components) result["component_topology"].push_back(to_json(t));
+
+  if (mesh.face_count() > 0) {
+    const std::string odd = defects_of(whole, defects);
+    job.row("manifold", std::string(manifold ? "yes" : "no") +
+                            (whole.oriented() ? ", compatibly oriented" : "") +
+                            (odd.empty() ? "" : ": " + odd));
+    job.row("topology", count_of(topology.components.size(), "component") + ", " + described(whole) +
+                            (defects.isolated_points > 0 ? " (isolated points aside)" : ""));
+    constexpr std::size_t kShown = 8;
+    if (topology.components.size() > 1)
+      for (std::size_t i = 0; i < std::min(kShown, topology.components.size()); ++i)
+        job.row("",
+                count_of(topology.components[i].faces, "face") + ": " + described(topology.components[i]));
+    if (topology.components.size() > kShown)
+      job.row("", "and " + grouped(topology.components.size() - kShown) + " more (--json lists them)");
+  }
+
+  const double area = surface_area(mesh);
+  result["area"] = area;
+  result["volume"] = nullptr;
+  if (whole.closed() && whole.oriented() && defects.degenerate_faces == 0) {
+    const double volume = enclosed_volume(mesh);
+    result["volume"] = volume;
+    job.row("volume", brief(volume));
+  }
+  result["bounds"] = nullptr;
+  if (!mesh.points.empty()) {
+    Vec3 low = mesh.points[0], high = mesh.points[0];
+    for (const Vec3& p : mesh.points) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    result["bounds"] = {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}};
+    job.row("bounds", triple(low) + " to " + triple(high));
+  }
+  job.row("area", brief(area));
+  return {};
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("info", "Counts, defects and topology of a mesh");
+  command->footer(
+      "Any mesh that can be read is described, a defective one too; the exit code is then still 0.\n"
+      "Components are faces that hang together through edges. The Euler characteristic v - e + f leaves "
+      "isolated points aside;\nthe genus of several components is the sum of theirs. STL has no shared "
+      "points: "
+      "equal corners are one.\n\n"
+      "Example:\n  vkmesh info data/dragon/dragon_vrip.ply.gz");
+  add_common_options(*command, program.options, true, false);
+  command->callback([&program] {
+    program.command = "info";
+    program.action = run;
+  });
+}
+
+}  // namespace vkmesh::cli

@@ -1,0 +1,338 @@
+// vkmesh simplify: fewer triangles, by quadric error.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <vkmesh/decimation/decimate.h>
+#include <vkmesh/mesh/triangulate.h>
+
+#include "commands.h"
+#include "commands/simplify/simplify_attributes.h"
+#include "commands/simplify/simplify_criteria.h"
+#include "passes/backend.h"
+
+namespace vkmesh::cli {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+struct SimplifyOptions {
+  std::string operation = "edge-collapse";
+  std::string placement = "optimal";
+  std::string boundary = "in-shape";
+  std::optional<double> ratio;
+  std::optional<std::size_t> faces, vertices;
+  std::optional<double> error, relative_error, time_limit, crease_angle, prune_size, prune_relative_size;
+  std::string lock;
+  std::vector<std::string> attributes;
+  bool index_only = false;
+  double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
+};
+
+/// "the link condition holds 12, …", the most first.
+std::string names_of(const Decimated::Held& held) {
+  std::vector<std::pair<std::size_t, const char*>> all = {
+      {held.link, "the manifold would break"}, {held.fold_over, "a face would fold over"},
+      {held.error, "the error is too large"},  {held.locked, "locked"},
+      {held.boundary, "of the boundary"},      {held.seam, "a seam would break"},
+      {held.criterion, "a bound forbids it"}};
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (const auto& [count, name] : all)
+    if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " (" + name + ")";
+  return text.empty() ? "nothing" : text;
+}
+
+std::string why(DecimateStop stop, const SimplifyOptions& options, const Decimated::Held& held) {
+  switch (stop) {
+    case DecimateStop::kTargetReached:
+      return "the target was reached";
+    case DecimateStop::kErrorBound:
+      return "the error of " +
+             (options.error ? brief(*options.error)
+                            : brief(100 * options.relative_error.value_or(0)) + " % of the diagonal") +
+             " holds what is left: " + names_of(held);
+    case DecimateStop::kTimeLimit:
+      return "the time was up";
+    case DecimateStop::kNoLegalCollapse:
+      return "what is left is illegal: " + names_of(held);
+  }
+  return {};
+}
+
+Json to_json(const Decimated::Held& held) {
+  return {{"link", held.link},          {"fold_over", held.fold_over}, {"error", held.error},
+          {"locked", held.locked},      {"boundary", held.boundary},   {"seam", held.seam},
+          {"criterion", held.criterion}};
+}
+
+DecimateOptions decimation_of(const SimplifyOptions& options) {
+  DecimateOptions decimation;
+  decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
+  if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
+  if (options.operation == "vertex-removal") decimation.operation = DecimateOperation::kVertexRemoval;
+  if (options.placement == "midpoint") decimation.placement = CollapsePlacement::kMidpoint;
+  if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
+  if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
+  if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
+  if (options.crease_angle) decimation.crease_angle = *options.crease_angle * kRadians;
+  decimation.prune_size = options.prune_size;
+  decimation.prune_relative_size = options.prune_relative_size;
+  decimation.target_faces = options.faces;
+  decimation.target_vertices = options.vertices;
+  decimation.target_ratio = options.ratio;
+  decimation.max_error = options.error;
+  decimation.max_relative_error = options.relative_error;
+  decimation.time_limit = options.time_limit;
+  return decimation;
+}
+
+/// Locks the points and faces whose value in the channel of that name is not 0.
+Result<void> lock_marked(const IndexedFaceSet& mesh, const std::string& name, DecimateOptions& decimation) {
+  const auto marked = [](const Channel& channel) {
+    std::vector<std::uint32_t> found;
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t i = 0; i < values.size(); ++i)
+            if (values[i] != 0 && (found.empty() || found.back() != i / channel.components))
+              found.push_back(static_cast<std::uint32_t>(i / channel.components));
+        },
+        channel.values);
+    return found;
+  };
+  const Channel *of_points = find_channel(mesh.point_channels, name),
+                *of_faces = find_channel(mesh.face_channels, name);
+  if (of_points == nullptr && of_faces == nullptr)
+    return fail(ErrorCode::kUsage,
+                "--lock " + name + ": neither points nor faces have an attribute of this name");
+  if (of_points != nullptr) decimation.locked_vertices = marked(*of_points);
+  if (of_faces != nullptr) decimation.locked_faces = marked(*of_faces);
+  return {};
+}
+
+Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteria& criteria) {
+  if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
+      !options.time_limit)
+    return fail(ErrorCode::kUsage,
+                "say when to stop: --ratio, --faces, --vertices, --error, --relative-error or --time-limit");
+  if (options.operation == "half-edge-collapse" && options.placement != "optimal" &&
+      options.placement != "endpoint")
+    return fail(ErrorCode::kUsage, "a half-edge collapse ends in an endpoint: leave --placement out");
+  if (options.operation == "vertex-removal" && options.placement != "optimal")
+    return fail(ErrorCode::kUsage, "vertex removal moves no points: leave --placement out");
+  const bool points_stay = options.operation != "edge-collapse" || options.placement == "endpoint";
+  if (options.index_only && !points_stay)
+    return fail(ErrorCode::kUsage,
+                "--index-only leaves all points where they are: add --operation half-edge-collapse");
+  use_host(job);
+  VKMESH_CHECK(job.check_output());
+  VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  VKMESH_TRY(HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
+  if (!mesh.is_triangles()) {
+    job.note("polygons were cut into triangles");
+    VKMESH_TRY(Triangulated cut, triangulate(mesh));  // as the half-edges were
+    mesh = std::move(cut.mesh);
+  }
+  DecimateOptions decimation = decimation_of(options);
+  VKMESH_TRY(decimation.criteria, criteria.criteria());
+  if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
+  VKMESH_TRY(const SimplifyAttributes attributes,
+             SimplifyAttributes::of(job, mesh, options.attributes, points_stay));
+  attributes.add_to(decimation);
+  // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
+  std::vector<Vec3> points = std::move(mesh.points);
+  mesh = {};
+
+  const std::size_t faces = half_edges.face_count();
+  VKMESH_TRY(Decimated decimated, job.timed("compute", [&] {
+    return decimate(half_edges, points, decimation, job.progress("simplifying"));
+  }));
+  half_edges = {};
+
+  IndexedFaceSet output;
+  output.corners.assign(decimated.mesh.origins().begin(), decimated.mesh.origins().end());
+  if (options.index_only) {
+    for (std::uint32_t& corner : output.corners) corner = decimated.source_vertex[corner];
+    output.points = std::move(points);
+    attributes.give_index_only(decimated, output);
+  } else {
+    output.points = std::move(decimated.positions);
+    attributes.give(decimated, output);
+    if (attributes.has_points() && !points_stay)
+      job.note(
+          "points were moved: each has the attributes of a point that it stands for, unless --attribute "
+          "names them");
+  }
+  const double ratio =
+      faces == 0 ? 1.0 : static_cast<double>(output.face_count()) / static_cast<double>(faces);
+  job.json()["result"] = {
+      {"stop", name_of(decimated.stop)},
+      {"operation", options.operation},
+      {"error", decimated.error},
+      {"relative_error", decimated.relative_error},
+      {"attributes", attributes.names()},
+      {"attribute_error", decimated.attribute_error},
+      {"ratio", ratio},
+      {"collapses", decimated.collapses},
+      {"pruned_components", decimated.pruned_components},
+      {"pruned_faces", decimated.pruned_faces},
+      {"rejected_link", decimated.rejected_link},
+      {"rejected_fold_over", decimated.rejected_fold_over},
+      {"rejected_error", decimated.rejected_error},
+      {"rejected_locked", decimated.rejected_locked},
+      {"rejected_seam", decimated.rejected_seam},
+      {"rejected_criterion", decimated.rejected_criterion},
+      {"held", to_json(decimated.held)},
+      {"distance_bound", decimated.distance_bound ? Json(*decimated.distance_bound) : Json(nullptr)}};
+  job.row("simplified", "to " + brief(100 * ratio) + " % of " + count_of(faces, "triangle") +
+                            "; largest error " + brief(decimated.error) + " in units of the file, " +
+                            brief(100 * decimated.relative_error) + " % of the diagonal");
+  if (decimated.distance_bound)
+    job.row("distance", "no point of either surface is farther than " + brief(*decimated.distance_bound) +
+                            " from the other");
+  if (decimated.pruned_components > 0)
+    job.row("pruned", count_of(decimated.pruned_components, "component") + " of " +
+                          count_of(decimated.pruned_faces, "triangle"));
+  job.row("stopped", why(decimated.stop, options, decimated.held));
+  job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
+                           " that would break the manifold, " + grouped(decimated.rejected_fold_over) +
+                           " that would fold a face over" +
+                           (attributes.names().empty()
+                                ? std::string()
+                                : ", " + grouped(decimated.rejected_seam) + " that would break a seam"));
+  std::string names;
+  for (const std::string& name : attributes.names()) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty())
+    job.row("attributes", names + "; largest weighted error " + brief(decimated.attribute_error) +
+                              ", as a share of the ranges");
+  return job.write(output);
+}
+
+}  // namespace
+
+void add_simplify(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("simplify", "Reduces the number of triangles");
+  command->footer(
+      "The cheapest edge is collapsed, again and again, by quadric error; the first rule met stops it. "
+      "Attributes\n"
+      "of points and faces stay with those that remain; those of corners, as texture coordinates, are made "
+      "to\n"
+      "fit. Runs on the host whatever --device says.\n\n"
+      "Examples:\n"
+      "  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1\n"
+      "  vkmesh simplify data/dragon/dragon_vrip.ply.gz near.ply --relative-error 1e-4 --boundary kept\n"
+      "  vkmesh simplify data/dragon/dragon_vrip.ply.gz few.ply --vertices 5000 --operation "
+      "half-edge-collapse\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz best.ply --ratio 0.1 --operation "
+      "vertex-removal\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz one.ply --ratio 0.1 --prune-relative-size 0.01\n"
+      "  vkmesh simplify data/cgal/meshes/fandisk.off part.ply --ratio 0.05 --crease-angle 40\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res2.ply.gz true.ply --ratio 0.2 --max-relative-distance "
+      "1e-3\n"
+      "  vkmesh simplify data/cgal/meshes/elephant.off even.ply --ratio 0.2 --criterion aspect-ratio=0.1 "
+      "--max-valence 8\n"
+      "  vkmesh simplify data/cgal/meshes/mesh_with_colors.off painted.ply --faces 3 --attribute color=0.05\n"
+      "  vkmesh simplify data/dragon/dragon_vrip_res3.ply.gz level.ply --ratio 0.5 --operation "
+      "half-edge-collapse --index-only");
+  add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
+  const auto options = std::make_shared<SimplifyOptions>();
+  const auto criteria = std::make_shared<SimplifyCriteria>();
+  command
+      ->add_option("--operation", options->operation,
+                   "edge-collapse (default): both ends become one point, which may be new;\n"
+                   "half-edge-collapse: one end moves to the other, no new points are made;\n"
+                   "vertex-removal: a point goes, and the best triangles fill the hole")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"edge-collapse", "half-edge-collapse", "vertex-removal"}));
+  command
+      ->add_option(
+          "--placement", options->placement,
+          "Where an edge collapse puts its point: optimal (least error, default), midpoint, endpoint")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"optimal", "midpoint", "endpoint"}));
+  command
+      ->add_option("--boundary", options->boundary,
+                   "kept: boundary points stay; in-shape (default): the boundary's shape counts in\n"
+                   "the error; free: it may shrink")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"kept", "in-shape", "free"}));
+  command
+      ->add_option(
+          "--attribute", options->attributes,
+          "An attribute of points or corners that counts in the error. At weight 1 a change over its\n"
+          "whole range counts as a move by the diagonal of the bounding box; default 0.01. More than\n"
+          "one may be given; all: each. What corners have but for normals counts, with the default\n"
+          "weight, if it is not named; seams stay closed")
+      ->type_name("NAME[=WEIGHT]");
+  command->add_flag("--index-only", options->index_only,
+                    "Keep all points of the file as they are and where they are in it, and write fewer\n"
+                    "triangles over them: for half-edge collapses and vertex removal");
+  command
+      ->add_option("--crease-angle", options->crease_angle,
+                   "Edges bent by at least so many degrees are creases, whose shape counts in the error\n"
+                   "as that of the boundary does; default none")
+      ->type_name("DEG")
+      ->check(number_between(0.001, 180));
+  CLI::Option* ratio =
+      command->add_option("--ratio", options->ratio, "Stop at this share of the triangles, from 0 to 1")
+          ->type_name("R")
+          ->check(number_between(0, 1));
+  command->add_option("--faces", options->faces, "Stop at this number of triangles")
+      ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
+      ->type_name("N")
+      ->excludes(ratio);
+  command->add_option("--vertices", options->vertices, "Stop at this number of points")
+      ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
+      ->type_name("N");
+  command
+      ->add_option("--relative-error", options->relative_error,
+                   "Do no collapse of a larger error, as a share of the bounding box's diagonal")
+      ->type_name("E")
+      ->check(number_between(0, std::numeric_limits<double>::max()));
+  command->add_option("--time-limit", options->time_limit, "Stop after this many seconds of simplifying")
+      ->type_name("S")
+      ->check(number_between(0, std::numeric_limits<double>::max()));
+  command
+      ->add_option("--error", options->error,
+                   "Do no collapse of a larger error, in units of the file's coordinates: the\n"
+                   "root of the mean squared distance to the planes of the faces a point stands for")
+      ->type_name("E")
+      ->check(number_between(0, std::numeric_limits<double>::max()));
+  command
+      ->add_option("--max-normal-deviation", options->max_normal_deviation,
+                   "Do no collapse that turns a remaining face by more than this, in degrees;\n"
+                   "between 0 and 180, default 75")
+      ->type_name("DEG")
+      ->check(number_between(0, 180));
+  command
+      ->add_option("--lock", options->lock,
+                   "Name of an attribute: points and faces where it is not 0 stay as they are")
+      ->type_name("NAME");
+  CLI::Option* prune =
+      command
+          ->add_option("--prune-size", options->prune_size,
+                       "First take away components whose bounding box has a diagonal of at most this, in\n"
+                       "units of the file's coordinates; that of most triangles always stays")
+          ->type_name("SIZE")
+          ->check(number_between(0, std::numeric_limits<double>::max()));
+  command
+      ->add_option("--prune-relative-size", options->prune_relative_size,
+                   "The same as a share of the whole mesh's diagonal")
+      ->type_name("SIZE")
+      ->check(number_between(0, std::numeric_limits<double>::max()))
+      ->excludes(prune);
+  add_simplify_criteria(*command, criteria);
+  command->callback([&program, options, criteria] {
+    program.command = "simplify";
+    program.action = [options, criteria](Job& job) { return run(job, *options, *criteria); };
+  });
+}
+
+}  // namespace vkmesh::cli

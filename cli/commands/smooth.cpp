@@ -1,0 +1,183 @@
+// vkmesh smooth: Taubin, Laplacian and bilateral smoothing.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "passes/backend.h"
+
+namespace vkmesh::cli {
+namespace {
+
+struct SmoothOptions {
+  std::string method = "taubin";
+  LaplacianSmoothingOptions steps;
+  std::optional<float> mu;
+  std::string boundary = "fixed";
+  double spatial = 4, influence = 1;  // Mean edge lengths.
+  bool keep_volume = false;
+};
+
+struct Smoothed {
+  std::vector<Vec3> points;
+  std::string how;  // For the table.
+};
+
+Result<Smoothed> by_steps(Job& job, Backend& backend, const HalfEdgeMesh& mesh, std::span<const Vec3> points,
+                          const SmoothOptions& options) {
+  LaplacianSmoothingOptions steps = options.steps;
+  // A little beyond -lambda, by Taubin's pass band: 1/lambda + 1/mu = 0.1 at lambda = 1/2.
+  const float lambda = steps.lambda;
+  steps.mu = options.method == "laplacian" ? 0.0f
+             : options.mu                  ? *options.mu
+                                           : -std::min(1.0f, lambda / (1.0f - 0.1f * lambda));
+  steps.boundary = options.boundary == "fixed"   ? SmoothingBoundary::kFixed
+                   : options.boundary == "along" ? SmoothingBoundary::kAlongItself
+                                                 : SmoothingBoundary::kFree;
+  job.json()["result"] = {{"method", options.method},
+                          {"lambda", steps.lambda},
+                          {"mu", steps.mu},
+                          {"iterations", steps.iterations},
+                          {"weights", steps.weights == SmoothingWeights::kUniform ? "uniform" : "cotangent"},
+                          {"boundary", options.boundary}};
+  VKMESH_TRY(std::vector<Vec3> smoothed,
+             backend.laplacian_smoothing(mesh, points, steps, options.keep_volume));
+  return Smoothed{std::move(smoothed),
+                  count_of(steps.iterations, "step") + " with lambda " +
+                      brief(static_cast<double>(steps.lambda)) +
+                      (steps.mu < 0 ? " and mu " + brief(static_cast<double>(steps.mu)) : "")};
+}
+
+Result<Smoothed> by_predictions(Job& job, Backend& backend, const HalfEdgeMesh& mesh,
+                                std::span<const Vec3> points, const SmoothOptions& options) {
+  const double edge = mean_edge_length(mesh, points);
+  const BilateralSmoothingOptions widths{.spatial = static_cast<float>(options.spatial * edge),
+                                         .influence = static_cast<float>(options.influence * edge)};
+  job.json()["result"] = {{"method", options.method},
+                          {"spatial", options.spatial},
+                          {"influence", options.influence},
+                          {"mean_edge_length", edge}};
+  if (mesh.face_count() == 0) return Smoothed{{points.begin(), points.end()}, "nothing: there are no faces"};
+  VKMESH_TRY(std::vector<Vec3> smoothed,
+             backend.bilateral_smoothing(mesh, points, widths, options.keep_volume));
+  return Smoothed{std::move(smoothed), "within " + brief(options.spatial) + ", across " +
+                                           brief(options.influence) + " mean edge lengths of " + brief(edge)};
+}
+
+Result<void> run(Job& job, const SmoothOptions& options) {
+  VKMESH_CHECK(job.check_output());
+  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
+  VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
+  const auto smooth = options.method == "bilateral" ? by_predictions : by_steps;
+  VKMESH_TRY(Smoothed smoothed, smooth(job, *backend, half_edges, mesh.points, options));
+
+  double sum = 0, largest = 0;
+  for (std::size_t i = 0; i < smoothed.points.size(); ++i) {
+    const DVec3 d = DVec3(smoothed.points[i]) - DVec3(mesh.points[i]);
+    const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    sum += length;
+    largest = std::max(largest, length);
+  }
+  const double mean = smoothed.points.empty() ? 0 : sum / static_cast<double>(smoothed.points.size());
+  mesh.points = std::move(smoothed.points);
+  Json& result = job.json()["result"];
+  result["keep_volume"] = options.keep_volume;
+  result["mean_move"] = mean;
+  result["largest_move"] = largest;
+  job.row("smoothed", options.method + ", " + smoothed.how + "; points moved by " + brief(mean) +
+                          " on average, " + brief(largest) + " at most");
+
+  // Normals of the surface as it was would shade the new one wrongly.
+  for (auto* channels : {&mesh.point_channels, &mesh.corner_channels, &mesh.face_channels})
+    if (std::erase_if(*channels, [](const Channel& c) { return c.name == "normal"; }) > 0)
+      job.note(
+          "the input's normals do not fit the moved points and were left out; vkmesh normals makes new ones");
+  return job.write(mesh);
+}
+
+}  // namespace
+
+void add_smooth(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("smooth", "Smooths: Taubin, Laplacian or bilateral");
+  command->footer(
+      "taubin (the default): each iteration moves every point by lambda of the way to the mean of its "
+      "neighbours, then\nby mu of the way back, so that the surface does not shrink. laplacian: the first "
+      "step only. bilateral: every\npoint moves once, to where the faces around it predict it; noise goes, "
+      "edges stay. Narrow and narrow (2 and 0.2)\nremoves noise, narrow and wide (2 and 4) small features, "
+      "wide and wide (4 and 4) large ones. Polygons stay; their\npoints have the neighbours of the triangles "
+      "they are cut into. Every device gives the same bytes.\n\n"
+      "Examples:\n  vkmesh smooth data/dragon/dragon_vrip.ply.gz smooth.ply --iterations 20\n"
+      "  vkmesh smooth data/cgal/meshes/fandisk.off smooth.ply --method bilateral --spatial 2 --influence "
+      "0.2");
+  add_common_options(*command, program.options, true, true);
+  add_consolidate_options(*command, program.options);
+  const auto options = std::make_shared<SmoothOptions>();
+  command->add_option("--method", options->method, "taubin (default), laplacian or bilateral")
+      ->type_name("METHOD")
+      ->check(CLI::IsMember({"taubin", "laplacian", "bilateral"}).description(""));
+  CLI::Option* lambda = command
+                            ->add_option("--lambda", options->steps.lambda,
+                                         "Share of the way in each step, from 0 to 1; default 0.5")
+                            ->type_name("L")
+                            ->check(number_between(0, 1));
+  CLI::Option* iterations = command
+                                ->add_option("--iterations", options->steps.iterations,
+                                             "Number of iterations, from 0 to 1000000; default 10")
+                                ->type_name("N")
+                                ->check(count_up_to(1000000));
+  CLI::Option* mu = command
+                        ->add_option("--mu", options->mu,
+                                     "Taubin's step back, from -1 to 0; default a little beyond -lambda:\n"
+                                     "-lambda / (1 - 0.1 lambda)")
+                        ->type_name("M")
+                        ->check(number_between(-1, 0));
+  const std::map<std::string, SmoothingWeights> kinds = {{"uniform", SmoothingWeights::kUniform},
+                                                         {"cotangent", SmoothingWeights::kCotangent}};
+  CLI::Option* weights =
+      command
+          ->add_option("--weights", options->steps.weights,
+                       "How much each neighbour counts: uniform (default), or cotangent, which moves points\n"
+                       "along the normal and keeps the shapes of triangles")
+          ->type_name("uniform|cotangent")
+          ->transform(one_of(kinds));
+  CLI::Option* boundary =
+      command
+          ->add_option("--boundary", options->boundary,
+                       "What points on the boundary do: fixed (default), along (they move along the "
+                       "boundary), free")
+          ->type_name("HOW")
+          ->check(CLI::IsMember({"fixed", "along", "free"}).description(""));
+  CLI::Option* spatial =
+      command
+          ->add_option("--spatial", options->spatial,
+                       "Bilateral: how far faces count, sigma_f in mean edge lengths; default 4")
+          ->type_name("F")
+          ->check(number_between(0.01, 1e6));
+  CLI::Option* influence =
+      command
+          ->add_option("--influence", options->influence,
+                       "Bilateral: how far off its place a point may be predicted, sigma_g in mean edge\n"
+                       "lengths; default 1")
+          ->type_name("G")
+          ->check(number_between(0.001, 1e6));
+  command->add_flag("--keep-volume", options->keep_volume,
+                    "Scale the smoothed surface to the volume that it had; it must be closed");
+  command->callback([&program, options, of_steps = std::vector{lambda, iterations, weights, boundary},
+                     of_predictions = std::vector{spatial, influence}, mu] {
+    const auto refuse = [&](const CLI::Option* option) {
+      if (option->count() > 0)
+        throw CLI::ValidationError(option->get_name(), "does not go with --method " + options->method);
+    };
+    if (options->method != "taubin") refuse(mu);
+    for (const CLI::Option* option : options->method == "bilateral" ? of_steps : of_predictions)
+      refuse(option);
+    program.command = "smooth";
+    program.action = [options](Job& job) { return run(job, *options); };
+  });
+}
+
+}  // namespace vkmesh::cli

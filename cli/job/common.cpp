@@ -1,0 +1,401 @@
+#include "job/common.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <vkmesh/mesh/triangulate.h>
+
+namespace vkmesh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+volatile std::sig_atomic_t g_interrupted = 0;
+
+extern "C" void on_signal(int) {
+  g_interrupted = 1;
+}
+
+constexpr const char* kTimings[] = {"read",    "consolidate", "open",  "upload", "device",
+                                    "compute", "download",    "write", "total"};
+
+/// Writes all of `text` and flushes, so that a full disk or a closed pipe is noticed.
+Result<void> put(std::FILE* stream, const std::string& text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() || std::fflush(stream) != 0)
+    return fail(ErrorCode::kNotWritable, std::strerror(errno), {"standard output", {}, {}});
+  return {};
+}
+
+/// nlohmann::json throws for bytes that are no UTF-8, which file names may hold: those become U+FFFD.
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string milliseconds(double ms) {
+  char text[32];
+  std::snprintf(text, sizeof text, ms < 10 ? "%.1f ms" : "%.0f ms", ms);
+  return text;
+}
+
+Json names_of(const std::vector<Channel>& channels) {
+  Json names = Json::array();
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  return names;
+}
+
+/// Counts and attributes, the same for what was read and what was written.
+Json counts_of(const IndexedFaceSet& mesh, const std::string& file, FileFormat format, FileEncoding encoding,
+               bool gzip) {
+  return {{"file", file},
+          {"format", name_of(format)},
+          {"encoding", name_of(encoding)},
+          {"gzip", gzip},
+          {"points", mesh.points.size()},
+          {"faces", mesh.face_count()},
+          {"corners", mesh.corners.size()},
+          {"point_attributes", names_of(mesh.point_channels)},
+          {"corner_attributes", names_of(mesh.corner_channels)},
+          {"face_attributes", names_of(mesh.face_channels)}};
+}
+
+/// What consolidation found and did, as "report" holds it.
+Json to_json(const ConsolidateReport& report) {
+  return {{"points", report.points},
+          {"faces", report.faces},
+          {"edges", report.edges},
+          {"boundary_edges", report.boundary_edges},
+          {"isolated_points", report.isolated_points},
+          {"degenerate_faces", report.degenerate_faces},
+          {"non_manifold_edges", report.non_manifold_edges},
+          {"misoriented_edges", report.misoriented_edges},
+          {"non_manifold_vertices", report.non_manifold_vertices},
+          {"manifold", report.manifold()},
+          {"welded_points", report.welded_points},
+          {"largest_weld_move", report.largest_weld_move},
+          {"weld_seams", report.weld_seams},
+          {"removed_degenerate_faces", report.removed_degenerate_faces},
+          {"removed_duplicate_faces", report.removed_duplicate_faces},
+          {"mended_polygons", report.mended_polygons},
+          {"removed_points", report.removed_points},
+          {"split_edges", report.split_edges},
+          {"split_points", report.split_points},
+          {"added_points", report.added_points},
+          {"flipped_faces", report.flipped_faces},
+          {"cut_components", report.cut_components},
+          {"cut_edges", report.cut_edges}};
+}
+
+std::string file_row(const IndexedFaceSet& mesh, const std::string& file, FileFormat format,
+                     FileEncoding encoding, bool gzip) {
+  std::string kind = name_of(format);
+  if (format == FileFormat::kPly || format == FileFormat::kStl)
+    kind += encoding == FileEncoding::kAscii ? ", ascii" : ", binary";
+  if (gzip) kind += ", gzip";
+  return file + "  (" + count_of(mesh.points.size(), "point") + ", " + count_of(mesh.face_count(), "face") +
+         "; " + kind + ")";
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  struct sigaction action = {};
+  action.sa_handler = on_signal;
+  // A second signal ends a program that does not get to look at the flag; without SA_RESTART reads return.
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  // A closed pipe and a limit on the size of files then fail the write, which says so.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+bool interrupted() {
+  return g_interrupted != 0;
+}
+
+ProgressLine::ProgressLine(bool shown) : shown_(shown), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+ProgressLine::~ProgressLine() {
+  erase();
+}
+
+Progress ProgressLine::stage(std::string name) {
+  return [this, name = std::move(name)](double fraction) {
+    if (shown_) draw(name, static_cast<int>(fraction * 100.0));
+    return !interrupted();
+  };
+}
+
+void ProgressLine::draw(const std::string& name, int percent) {
+  if (!terminal_) percent = percent / 10 * 10;
+  if (name == last_name_ && percent == last_percent_) return;
+  last_name_ = name;
+  last_percent_ = percent;
+  std::fprintf(stderr, terminal_ ? "\r\x1b[K%s %d %%" : "%s %d %%\n", name.c_str(), percent);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void ProgressLine::erase() {
+  if (drawn_ && terminal_) {
+    std::fputs("\r\x1b[K", stderr);
+    std::fflush(stderr);
+  }
+  drawn_ = false;
+}
+
+Job::Job(std::string command, CommonOptions options)
+    : options_(std::move(options)),
+      json_({{"command", std::move(command)},
+             {"version", VKMESH_VERSION},
+             {"device", nullptr},
+             {"input", nullptr},
+             {"output", nullptr},
+             {"report", nullptr},
+             {"timings_ms", Json::object()},
+             {"result", Json::object()},
+             {"notes", Json::array()}}),
+      progress_(options_.progress == "always" ||
+                (options_.progress == "auto" && !options_.quiet && isatty(STDERR_FILENO) != 0)) {
+  for (const char* name : kTimings) json_["timings_ms"][name] = nullptr;
+}
+
+void Job::book(const char* name, double ms) {
+  Json& entry = json_["timings_ms"][name];
+  entry = (entry.is_null() ? 0.0 : entry.get<double>()) + ms;
+}
+
+Result<IndexedFaceSet> Job::read() {
+  return timed("read", [&]() -> Result<IndexedFaceSet> {
+    VKMESH_TRY(MeshFile file, read_mesh(options_.input, {progress("reading")}));
+    const FileFormat format = file.format;
+    const FileEncoding encoding = file.encoding;
+    const bool gzip = file.gzip;
+    for (std::string& sentence : file.notes) note(options_.input + ": " + sentence);
+    VKMESH_TRY(IndexedFaceSet mesh, to_indexed_face_set(std::move(file)));
+    json_["input"] = counts_of(mesh, options_.input, format, encoding, gzip);
+    row("input", file_row(mesh, options_.input, format, encoding, gzip));
+    return mesh;
+  });
+}
+
+Result<void> Job::check_output() {
+  if (options_.output.empty()) return {};
+  VKMESH_TRY(write_options_, write_options_for(options_.output));
+  write_options_.comment = "made by vkmesh " VKMESH_VERSION;
+  return check_place(options_.output);
+}
+
+Result<void> check_place(const std::string& file) {
+  if (file == "-") return {};
+  const fs::path path = file;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code error;
+  if (fs::is_directory(path, error)) return fail(ErrorCode::kNotWritable, "is a directory", {file, {}, {}});
+  if (!fs::is_directory(folder, error))
+    return fail(ErrorCode::kNotWritable, "the folder " + folder.string() + " does not exist", {file, {}, {}});
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    return fail(ErrorCode::kNotWritable, "the folder " + folder.string() + ": " + std::strerror(errno),
+                {file, {}, {}});
+  return {};
+}
+
+Result<HalfEdgeMesh> Job::consolidate(IndexedFaceSet& mesh) {
+  return timed("consolidate", [&]() -> Result<HalfEdgeMesh> {
+    auto result = vkmesh::consolidate(std::move(mesh), options_.consolidation, progress("consolidating"));
+    if (!result) {
+      if (result.error().where.file.empty()) result.error().where.file = options_.input;
+      return tl::unexpected<Error>(std::move(result.error()));
+    }
+    json_["report"] = to_json(result->report);
+    for (std::string& sentence : result->report.repairs()) row("mended", std::move(sentence));
+    mesh = std::move(result->face_set);
+    return std::move(result->mesh);
+  });
+}
+
+Result<HalfEdgeMesh> Job::consolidate_triangles(IndexedFaceSet& mesh) {
+  VKMESH_TRY(HalfEdgeMesh half_edges, consolidate(mesh));
+  if (mesh.is_triangles()) return half_edges;
+  return timed("consolidate", [&]() -> Result<HalfEdgeMesh> {
+    VKMESH_TRY(const Triangulated cut, triangulate(mesh));
+    auto triangles = to_half_edge_mesh(cut.mesh);
+    if (!triangles) {
+      triangles.error().where.file = options_.input;
+      triangles.error().message = "cut into triangles, the polygons are " + triangles.error().message;
+    }
+    return triangles;
+  });
+}
+
+Result<void> Job::write(const IndexedFaceSet& mesh, bool ascii) {
+  if (ascii) write_options_.encoding = FileEncoding::kAscii;
+  VKMESH_TRY(const std::vector<std::string> left_out,
+             timed("write", [&] { return write_mesh(options_.output, mesh, write_options_); }));
+  for (const std::string& sentence : left_out) note(options_.output + ": " + sentence);
+  const auto& w = write_options_;
+  json_["output"] = counts_of(mesh, options_.output, w.format, w.encoding, w.gzip);
+  row("output", file_row(mesh, options_.output, w.format, w.encoding, w.gzip));
+  return {};
+}
+
+Result<void> Job::print() {
+  progress_.erase();
+  book("total", milliseconds_since(start_));
+  json_["notes"] = notes_;
+  if (options_.json) return put(stdout, text_of(json_));
+  if (options_.quiet) return {};
+
+  std::string times;
+  for (const char* name : kTimings)
+    if (const Json& ms = json_["timings_ms"][name]; !ms.is_null())
+      times += std::string(times.empty() ? "" : ", ") + name + " " + milliseconds(ms.get<double>());
+  if (!json_["input"].is_null()) row("time", times);
+  for (const std::string& sentence : notes_) row("note", sentence);
+
+  std::size_t width = 0;
+  for (const auto& [label, value] : rows_) width = std::max(width, label.size());
+  std::string text;
+  for (const auto& [label, value] : rows_)
+    text += label + std::string(width + 2 - label.size(), ' ') + value + "\n";
+  return put(options_.output == "-" ? stderr : stdout, text);
+}
+
+void Job::print_error(const Error& error) {
+  progress_.erase();
+  cli::print_error(error, options_.json);
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options, bool has_input, bool has_output) {
+  if (has_input)
+    command
+        .add_option("IN", options.input,
+                    "Mesh to read: PLY, OBJ, OFF, STL, glTF (.gltf, .glb), OpenInventor or VRML, also\n"
+                    "gzipped; - for standard input")
+        ->type_name("")
+        ->required();
+  if (has_output)
+    command
+        .add_option("OUT", options.output,
+                    "Mesh to write: .ply, .obj, .off, .stl, .gltf, .glb, .iv, .wrl (VRML 2), .vrml1, also\n"
+                    "with .gz; - for a PLY on standard output")
+        ->type_name("")
+        ->required();
+  command
+      .add_option("--device", options.device,
+                  "Where compute passes run: auto (default; a GPU, else the CPU), cpu, or\n"
+                  "the index or a part of the name of a Vulkan device (see vkmesh devices)")
+      ->type_name("DEVICE");
+  command
+      .add_option("--progress", options.progress,
+                  "Progress on standard error: auto (default; on a terminal), always, never")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
+  command.add_flag("--json", options.json,
+                   "Print one JSON object on standard output, and nothing else there");
+  command.add_flag("--quiet", options.quiet, "Print nothing but errors");
+}
+
+void add_consolidate_options(CLI::App& command, CommonOptions& options) {
+  ConsolidateOptions& consolidation = options.consolidation;
+  const auto weld = [&consolidation](const std::string& text) {
+    const bool relative = text.ends_with('%');
+    double value = 0;
+    const char* const to = text.data() + text.size() - (relative ? 1 : 0);
+    const auto [end, error] = std::from_chars(text.data(), to, value);
+    if (error != std::errc() || end != to || !(value >= 0) || value > std::numeric_limits<double>::max())
+      throw CLI::ValidationError("--weld",
+                                 "'" + text + "' is no length, nor a share of the diagonal like 0.01%");
+    consolidation.weld = WeldOptions{relative ? value / 100 : value, relative};
+  };
+  command
+      .add_option_function<std::string>(
+          "--weld", weld,
+          "First make points at most this far apart one: a length in units of the file, or a\n"
+          "share of the bounding box's diagonal like 0.01%; 0 joins equal coordinates only")
+      ->type_name("T");
+  command.add_flag("--strict", consolidation.strict,
+                   "Refuse a mesh that is no oriented manifold (exit code 4), instead of mending it");
+  command.add_flag_callback(
+      "--drop-isolated", [&consolidation] { consolidation.keep_isolated_points = false; },
+      "Leave out points that no face uses");
+  command.add_flag_callback(
+      "--refuse-non-orientable", [&consolidation] { consolidation.cut_non_orientable = false; },
+      "Refuse a surface like the Moebius strip, instead of cutting it open along a seam");
+}
+
+Result<std::pair<std::string, double>> named_weight(const std::string& option, const std::string& text,
+                                                    double default_weight) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) return std::pair(text, default_weight);
+  double weight = 0;
+  const auto [end, error] = std::from_chars(text.data() + equals + 1, text.data() + text.size(), weight);
+  if (error != std::errc() || end != text.data() + text.size() || !(weight >= 0 && std::isfinite(weight)))
+    return fail(ErrorCode::kUsage, option + " " + text + ": the weight must be a number of at least 0");
+  return std::pair(text.substr(0, equals), weight);
+}
+
+CLI::Validator number_between(double low, double high) {
+  const auto check = [low, high](std::string& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good =
+        error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+    return good ? std::string() : "'" + text + "' is no number between " + brief(low) + " and " + brief(high);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator count_up_to(std::uint64_t high) {
+  const auto check = [high](std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc() && end == text.data() + text.size() && value <= high;
+    return good ? std::string() : "'" + text + "' is no whole number between 0 and " + std::to_string(high);
+  };
+  return CLI::Validator(check, "");
+}
+
+void print_error(const Error& error, bool json) {
+  std::fprintf(stderr, "vkmesh: %s\n", error.describe().c_str());
+  if (!json) return;
+  const auto or_null = [](const std::optional<std::uint64_t>& n) { return n ? Json(*n) : Json(nullptr); };
+  const Json object = {{"error",
+                        {{"code", static_cast<int>(error.code)},
+                         {"message", error.message},
+                         {"file", error.where.file.empty() ? Json(nullptr) : Json(error.where.file)},
+                         {"line", or_null(error.where.line)},
+                         {"byte", or_null(error.where.byte)}}}};
+  static_cast<void>(put(stdout, text_of(object)));
+}
+
+std::string grouped(std::size_t n) {
+  std::string text = std::to_string(n);
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+  return text;
+}
+
+std::string brief(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+std::string count_of(std::size_t n, const std::string& singular, const std::string& plural) {
+  return grouped(n) + " " + (n == 1 ? singular : plural.empty() ? singular + "s" : plural);
+}
+
+}  // namespace vkmesh::cli

@@ -1,0 +1,75 @@
+// Memory of a device, found by address.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan_core.h>
+
+#include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/context.h>
+
+namespace vkmesh {
+
+enum class BufferMemory {
+  kDevice,   ///< What shaders work in: fast for the device; mapped only where that is also fast for the host.
+  kStaging,  ///< Written by the host, copied from.
+  kReadback,  ///< Copied to, read by the host.
+};
+
+/// A range of device memory with an address that kernels take. Moves, does not copy. Empty when default-made.
+class Buffer {
+ public:
+  /// `bytes` may be 0. `name` is shown by debuggers and validation. The content is undefined.
+  /// Errors: kOutOfMemory, which says how many bytes were asked for and how many this context holds.
+  [[nodiscard]] static Result<Buffer> create(Context& context, std::uint64_t bytes,
+                                             BufferMemory memory = BufferMemory::kDevice,
+                                             const std::string& name = {});
+
+  Buffer() = default;
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+  ~Buffer();
+
+  [[nodiscard]] std::uint64_t size() const { return size_; }  ///< Bytes, as asked for.
+  [[nodiscard]] std::uint64_t address() const { return address_; }
+  [[nodiscard]] VkBuffer vk_buffer() const { return buffer_; }
+  /// The host's view of the memory; empty where it has none. After writing call flush(), before reading
+  /// invalidate().
+  [[nodiscard]] std::span<std::byte> mapped() const { return {mapped_, mapped_ == nullptr ? 0 : size_}; }
+  [[nodiscard]] Result<void> flush();
+  [[nodiscard]] Result<void> invalidate() const;
+
+  /// Copies from or to the host, and returns when that is done: directly, or through a staging buffer of at
+  /// most ContextOptions::staging_bytes. The device must not be using the buffer. O(bytes). Errors: kUsage
+  /// for a range outside the buffer; kOutOfMemory; kNoDevice.
+  [[nodiscard]] Result<void> upload(std::span<const std::byte> data, std::uint64_t offset = 0);
+  [[nodiscard]] Result<void> download(std::span<std::byte> data, std::uint64_t offset = 0) const;
+
+  /// The whole buffer as values of T.
+  template <class T>
+  [[nodiscard]] Result<void> upload_values(std::span<const T> values) {
+    return upload(std::as_bytes(values));
+  }
+  template <class T>
+  [[nodiscard]] Result<void> download_values(std::span<T> values) const {
+    return download(std::as_writable_bytes(values));
+  }
+
+ private:
+  void destroy() noexcept;
+
+  Context* context_ = nullptr;
+  VkBuffer buffer_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  std::byte* mapped_ = nullptr;
+  std::uint64_t size_ = 0;
+  std::uint64_t allocated_ = 0;
+  std::uint64_t address_ = 0;
+  bool coherent_ = true;
+};
+
+}  // namespace vkmesh

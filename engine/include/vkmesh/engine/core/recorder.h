@@ -1,0 +1,111 @@
+// Work for a device, recorded and then run at once.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <vulkan/vulkan_core.h>
+
+#include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/buffer.h>
+#include <vkmesh/engine/core/context.h>
+#include <vkmesh/engine/core/kernel.h>
+
+namespace vkmesh {
+
+/// The device's time for a section of the work.
+struct SectionTime {
+  std::string name;
+  double milliseconds = 0.0;
+};
+
+/// What a recorder has recorded so far.
+struct RecorderCounts {
+  std::uint32_t dispatches = 0;  ///< vkCmdDispatch calls: split work counts each part.
+  std::uint32_t copies = 0;
+  std::uint32_t barriers = 0;  ///< Between pieces of work; the one that closes a submission is not counted.
+};
+
+/// Records kernels and copies in the order of the calls. Each says which buffers it reads and writes; where
+/// one touches what an earlier one wrote, or writes what an earlier one read, a memory barrier goes between
+/// them, and nowhere else. Buffers must live until the work has run. One thread at a time.
+class Recorder {
+ public:
+  /// Into a command buffer of its own, to be run by submit_and_wait(). Errors: kOutOfMemory, kNoDevice.
+  [[nodiscard]] static Result<Recorder> create(Context& context);
+
+  /// Into the caller's command buffer, which must be recording, outside a render pass, for the context's
+  /// queue family. The caller submits it, and places what barriers are needed against its own work before and
+  /// after: the recorder's is done in the stages COMPUTE_SHADER and TRANSFER, and for drawing in those of a
+  /// graphics pipeline. No time-stamps. Errors: kUsage
+  /// for a null handle.
+  [[nodiscard]] static Result<Recorder> into(Context& context, VkCommandBuffer command_buffer);
+
+  /// Waits (at most as long as the last wait) for work that still runs.
+  ~Recorder();
+  Recorder(Recorder&&) noexcept;
+  Recorder& operator=(Recorder&&) noexcept;
+
+  [[nodiscard]] Context& context() const;
+
+  /// Runs the kernel for `threads` elements, from element 0. `push_constants` is the struct shared with the
+  /// shader; its `first` and `count` are filled here, for each part of work that is split. Errors: kUsage for
+  /// push constants of another size, or after submit_and_wait().
+  template <class Params>
+  [[nodiscard]] Result<void> dispatch(const Kernel& kernel, const Params& push_constants,
+                                      std::uint64_t threads, std::initializer_list<const Buffer*> reads,
+                                      std::initializer_list<const Buffer*> writes) {
+    static_assert(std::is_trivially_copyable_v<Params> && std::is_standard_layout_v<Params>);
+    static_assert(offsetof(Params, first) == 0 && offsetof(Params, count) == 4);
+    return dispatch_bytes(kernel, std::as_bytes(std::span(&push_constants, 1)), threads,
+                          std::span(reads.begin(), reads.size()), std::span(writes.begin(), writes.size()));
+  }
+
+  /// Copies `bytes` bytes. Errors: kUsage for ranges outside the buffers, or after submit_and_wait().
+  [[nodiscard]] Result<void> copy(const Buffer& from, const Buffer& to, std::uint64_t bytes,
+                                  std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
+
+  /// Writes `data` to the start of a buffer; the bytes travel in the command buffer. Errors: kUsage for a
+  /// size that is no multiple of four, above 65536 or above the buffer's, or after submit_and_wait().
+  [[nodiscard]] Result<void> update(const Buffer& to, std::span<const std::byte> data);
+
+  /// Calls `commands` with the command buffer, to record drawing that reads and writes these buffers: as
+  /// vertices, indices and in shaders, or by transfers. A render pass must begin and end inside. Errors:
+  /// kNoDevice where the queue does not draw; kUsage after submit_and_wait().
+  [[nodiscard]] Result<void> graphics(const std::function<void(VkCommandBuffer)>& commands,
+                                      std::span<const Buffer* const> reads,
+                                      std::span<const Buffer* const> writes);
+
+  /// Starts a section whose time section_times() will tell; it ends where the next one starts, or with the
+  /// work. At most 64 sections; further ones, and all of them on a device without time-stamps, are not timed.
+  void begin_section(const std::string& name);
+
+  /// Runs what was recorded, and waits until it is done or the time is up. Once for each recorder.
+  /// Errors: kNoDevice for a device that was lost or did not finish in time (wait() goes on waiting);
+  /// kOutOfMemory; kUsage for a second call, or on the caller's command buffer.
+  [[nodiscard]] Result<void> submit_and_wait(std::chrono::nanoseconds timeout = std::chrono::seconds(60));
+  [[nodiscard]] Result<void> wait(std::chrono::nanoseconds timeout);
+
+  /// In order of recording; empty before the work is done, or where the device has no time-stamps.
+  [[nodiscard]] std::vector<SectionTime> section_times() const;
+  [[nodiscard]] RecorderCounts counts() const;
+
+ private:
+  struct State;
+  explicit Recorder(std::unique_ptr<State> state);
+  [[nodiscard]] Result<void> dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push_constants,
+                                            std::uint64_t threads, std::span<const Buffer* const> reads,
+                                            std::span<const Buffer* const> writes);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vkmesh

@@ -1,0 +1,16 @@
+// Triangle normals on a device.
+#pragma once
+
+#include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/mesh/device_mesh.h>
+#include <vkmesh/passes/triangle_normals.h>
+
+namespace vkmesh {
+
+/// Records the pass of which vkmesh::triangle_normals() is the reference, equal to it bit for bit; the result
+/// is read by DeviceMesh::download_triangle_normals(). O(faces). Errors: kUsage unless the mesh was made for
+/// this pass.
+[[nodiscard]] Result<void> record_triangle_normals(Recorder& recorder, DeviceMesh& mesh);
+
+}  // namespace vkmesh

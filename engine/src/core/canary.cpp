@@ -1,0 +1,121 @@
+// Does the device compute what the host computes?
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+#include <vkmesh/engine/core/buffer.h>
+#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/math/arithmetic.h>
+
+#include "core/device.h"
+#include "core/shaders.h"
+
+namespace vkmesh::detail {
+namespace {
+
+constexpr std::uint32_t kCases = 512;
+
+/// What each result of shaders/canary.comp is.
+constexpr std::array<const char*, VKMESH_CANARY_RESULTS> kNames = {
+    "zero_below",     "reciprocal",  "reciprocal_root", "root",          "first_quadrant_angle",
+    "squared_length", "area_vector", "area_vector",     "area_vector",   "unit_vector",
+    "unit_vector",    "unit_vector", "angle_between",   "a + b * c",     "reciprocal",
+    "float of uint",  "arccosine",   "exponential",     "vector_length", "cotangent",
+    "corner_angle",   "cube_root",   "dihedral_angle"};
+
+/// Values of either sign and of every magnitude in [2^-60, 2^50), some equal, some one bit apart.
+std::vector<float> make_inputs() {
+  std::vector<float> inputs(kCases * VKMESH_CANARY_INPUTS);
+  std::uint32_t state = 1;
+  const auto random = [&] {
+    state = state * 1664525u + 1013904223u;
+    return state >> 8;
+  };
+  for (std::uint32_t i = 0; i < kCases; ++i) {
+    // Every other case has its values close together, as the corners of a triangle are.
+    const std::uint32_t exponent = 127 - 60 + random() % 110;
+    for (std::uint32_t k = 0; k < VKMESH_CANARY_INPUTS; ++k) {
+      const std::uint32_t own = i % 2 == 0 ? exponent : 127 - 60 + random() % 110;
+      const std::uint32_t bits = (random() % 2) << 31 | own << 23 | (random() & 0x7fffffu);
+      inputs[i * VKMESH_CANARY_INPUTS + k] = std::bit_cast<float>(bits);
+    }
+    if (i % 16 == 0) inputs[i * VKMESH_CANARY_INPUTS + 3] = inputs[i * VKMESH_CANARY_INPUTS];
+    if (i % 32 == 0)
+      inputs[i * VKMESH_CANARY_INPUTS + 4] = std::nextafter(inputs[i * VKMESH_CANARY_INPUTS + 1], 0.0f);
+  }
+  return inputs;
+}
+
+std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t i) {
+  const Vec3 a(in[0], in[1], in[2]), b(in[3], in[4], in[5]), c(in[6], in[7], in[8]);
+  const float x = std::fabs(a.x), y = std::fabs(a.y);
+  const Vec3 area = area_vector(a, b, c), unit = unit_vector(a);
+  const float twice_area = vector_length(area), product = corner_product(a, b, c);
+  return {zero_below(a.x, y),
+          reciprocal(x),
+          reciprocal_root(x),
+          root(y),
+          first_quadrant_angle(y, x),
+          squared_length(b),
+          area.x,
+          area.y,
+          area.z,
+          unit.x,
+          unit.y,
+          unit.z,
+          angle_between(unit, unit_vector(b)),
+          c.x + c.y * (b.x - c.x),
+          reciprocal(static_cast<float>(i + 1)),
+          static_cast<float>(i * 8388617u),
+          arccosine(unit.x),
+          exponential(a.y),
+          vector_length(b),
+          cotangent(product, twice_area),
+          corner_angle(product, twice_area),
+          cube_root(y),
+          dihedral_angle(unit, unit_vector(b), c)};
+}
+
+std::string hexadecimal(float value) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(std::bit_cast<std::uint32_t>(value)));
+  return text.data();
+}
+
+}  // namespace
+
+Result<void> check_exactness(Context& context) {
+  const std::vector<float> inputs = make_inputs();
+  std::vector<float> results(kCases * VKMESH_CANARY_RESULTS);
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(context, canary_kernel()));
+  VKMESH_TRY(Buffer input_buffer,
+             Buffer::create(context, inputs.size() * sizeof(float), BufferMemory::kDevice, "canary inputs"));
+  VKMESH_TRY(const Buffer result_buffer, Buffer::create(context, results.size() * sizeof(float),
+                                                        BufferMemory::kDevice, "canary results"));
+  VKMESH_CHECK(input_buffer.upload_values<float>(inputs));
+  VKMESH_TRY(Recorder recorder, Recorder::create(context));
+  kernels::CanaryParams params{};
+  params.inputs = input_buffer.address();
+  params.results = result_buffer.address();
+  VKMESH_CHECK(recorder.dispatch(*kernel, params, kCases, {&input_buffer}, {&result_buffer}));
+  VKMESH_CHECK(recorder.submit_and_wait());
+  VKMESH_CHECK(result_buffer.download_values<float>(results));
+
+  for (std::uint32_t i = 0; i < kCases; ++i) {
+    const auto wanted = expected(inputs.data() + i * VKMESH_CANARY_INPUTS, i);
+    for (std::uint32_t k = 0; k < VKMESH_CANARY_RESULTS; ++k) {
+      const float got = results[i * VKMESH_CANARY_RESULTS + k];
+      if (std::bit_cast<std::uint32_t>(got) != std::bit_cast<std::uint32_t>(wanted[k]))
+        return fail(ErrorCode::kNoDevice, context.info().name + " computes " + kNames[k] +
+                                              " otherwise than the host: " + hexadecimal(got) +
+                                              " instead of " + hexadecimal(wanted[k]) + " in case " +
+                                              std::to_string(i));
+    }
+  }
+  return {};
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,39 @@
+// Walks over the faces of a mesh.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include <vkmesh/base/result.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
+
+namespace vkmesh {
+
+/// Calls visit(FaceId, steps) with `start` and the faces around it in order of the number of edges to cross,
+/// those of one number in the order in which they are met, until visit returns false or the component is
+/// walked. Expected time and memory proportional to the faces visited. Throws std::bad_alloc when memory
+/// runs out, and what visit throws.
+template <class Visit>
+void walk_breadth_first(const HalfEdgeMesh& mesh, FaceId start, Visit&& visit) {
+  std::unordered_set<std::uint32_t> seen = {start.index};
+  std::vector<FaceId> ring = {start}, next;
+  for (std::size_t steps = 0; !ring.empty(); ++steps, std::swap(ring, next), next.clear())
+    for (const FaceId f : ring) {
+      if (!visit(f, steps)) return;
+      for (const FaceId g : mesh.faces_around(f))
+        if (g.valid() && seen.insert(g.index).second) next.push_back(g);
+    }
+}
+
+/// Components of a mesh: faces that hang together through shared edges.
+struct FaceComponents {
+  std::vector<std::uint32_t> of_face;  ///< Of each face the number of its component, by first faces.
+  std::vector<std::size_t> faces;      ///< Of each component.
+};
+/// O(half-edges). Errors: kOutOfMemory.
+[[nodiscard]] Result<FaceComponents> face_components(const HalfEdgeMesh& mesh);
+
+}  // namespace vkmesh

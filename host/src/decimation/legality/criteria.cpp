@@ -1,0 +1,206 @@
+#include "decimation/legality/criteria.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+namespace vkmesh::detail {
+namespace {
+
+DVec3 area_vector(const Triangle& t) {
+  return glm::cross(t[1] - t[0], t[2] - t[0]);
+}
+
+/// 0 of a triangle without area.
+DVec3 unit_normal(const Triangle& t) {
+  const DVec3 n = area_vector(t);
+  const double length = std::sqrt(glm::dot(n, n));
+  return length > 0 ? n / length : DVec3(0.0);
+}
+
+double longest_side2(const Triangle& t) {
+  const DVec3 a = t[1] - t[0], b = t[2] - t[1], c = t[0] - t[2];
+  return std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)});
+}
+
+template <class F>
+double largest(std::span<const Star::Face> faces, F&& of) {
+  double most = 0;
+  for (const Star::Face& face : faces) most = std::max(most, of(face.corner));
+  return most;
+}
+
+// What is stored is no less than what was found.
+float rounded_up(double x) {
+  const auto below = static_cast<float>(x);
+  return static_cast<double>(below) >= x ? below
+                                         : std::nextafter(below, std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+double aspect_ratio(const Triangle& t) {
+  const DVec3 n = area_vector(t);
+  const double twice = std::sqrt(glm::dot(n, n));
+  return twice > 0 ? 0.5 * std::numbers::sqrt3 * longest_side2(t) / twice
+                   : std::numeric_limits<double>::infinity();
+}
+
+Criteria::Criteria(const DecimateCriteria& criteria, const Frame& frame, const CollapseMesh& mesh)
+    : criteria_(criteria),
+      watches_distance_(criteria.watch_distance || criteria.max_distance || criteria.max_relative_distance),
+      bounds_(watches_distance_ || criteria.max_original_normal_deviation || criteria.max_edge_length ||
+              criteria.max_aspect_ratio || criteria.max_valence) {
+  if (criteria.max_distance) distance_ = *criteria.max_distance * frame.scale;
+  if (criteria.max_relative_distance)
+    distance_ = std::min(distance_, *criteria.max_relative_distance * frame.diagonal * frame.scale);
+  if (criteria.max_edge_length) {
+    const double length = *criteria.max_edge_length * frame.scale;
+    edge_length2_ = length * length;
+  }
+  if (watches_distance_) distances_.assign(mesh.face_count(), 0.0f);
+  if (criteria.max_original_normal_deviation) {
+    chord_ = 2 * std::sin(0.5 * *criteria.max_original_normal_deviation);
+    normals_.resize(mesh.face_count());
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+      if (!mesh.face(4 * f).alive()) continue;  // pruned
+      const DVec3 n = unit_normal(face_of(mesh, f).corner);
+      if (n != DVec3(0.0))
+        normals_[f] = {{static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)}, 1e-6f};
+    }
+  }
+}
+
+float Criteria::cost(float quadric, float area, const Star& star) const {
+  const auto square = [](double x) { return x * x; };
+  double factor = square(criteria_.density_weight);
+  if (criteria_.aspect_weight > 0) {
+    const double worst = largest(star.after, aspect_ratio);
+    factor += square(criteria_.aspect_weight) * (worst > 0 ? 1 - 1 / worst : 0.0);
+  }
+  if (criteria_.normal_weight > 0) {
+    double least = 1;  // cosine
+    for (const Star::Face& face : star.after) {
+      const DVec3 n = unit_normal(face.corner);
+      double nearest = -1;
+      for (const Star::Face& old : star.before)
+        nearest = std::max(nearest, glm::dot(n, unit_normal(old.corner)));
+      least = std::min(least, nearest);
+    }
+    factor += square(criteria_.normal_weight) * (1 - least);
+  }
+  const double sum = square(criteria_.quadric_weight) * static_cast<double>(quadric) +
+                     static_cast<double>(area) * star.length2 * factor;
+  return static_cast<float>(sum);
+}
+
+bool Criteria::allow(const Star& star) {
+  if (criteria_.max_valence && star.edges_after > std::max(*criteria_.max_valence, star.edges_before))
+    return false;
+  if (criteria_.max_edge_length) {
+    const double longest = largest(star.after, longest_side2);
+    if (longest > edge_length2_ && longest > largest(star.before, longest_side2)) return false;
+  }
+  if (criteria_.max_aspect_ratio) {
+    const double worst = largest(star.after, aspect_ratio);
+    if (worst > *criteria_.max_aspect_ratio && worst > largest(star.before, aspect_ratio)) return false;
+  }
+  return (normals_.empty() || looks_alike(star)) && (distances_.empty() || stays_near(star));
+}
+
+/// Whether inner vertices alone show that the distance would be too large: most that are too far are so
+/// there.
+bool Criteria::is_far(const Star& star) const {
+  const auto far = [&](const DVec3& p, std::span<const Star::Face> faces, bool with_theirs) {
+    return std::all_of(faces.begin(), faces.end(), [&](const Star::Face& face) {
+      const double theirs = with_theirs ? static_cast<double>(distances_[face.record]) : 0;
+      const double left = distance_ - theirs;
+      return left < 0 || squared_distance(p, face.corner) > left * left;
+    });
+  };
+  return std::any_of(star.inner_after.begin(), star.inner_after.end(),
+                     [&](const DVec3& p) { return far(p, star.before, true); }) ||
+         std::any_of(star.inner_before.begin(), star.inner_before.end(),
+                     [&](const DVec3& p) { return far(p, star.after, false); });
+}
+
+/// A point of the original that is within d of a point of the surface before, which is within e of one after,
+/// is within d + e of that; and so the other way round.
+bool Criteria::stays_near(const Star& star) {
+  if (is_far(star)) return false;
+  DVec3 up(0.0);
+  for (const Star::Face& face : star.before) up += area_vector(face.corner);
+  distances_after_.assign(star.after.size(), 0.0f);
+  const auto add = [&](std::size_t before, std::size_t after, double apart) {
+    const double sum = static_cast<double>(distances_[star.before[before].record]) + apart;
+    distances_after_[after] = std::max(distances_after_[after], rounded_up(sum));
+    return sum <= distance_;
+  };
+  return overlay_.cut(star.before, star.after, up, add) &&
+         overlay_.cut(star.after, star.before, up,
+                      [&](std::size_t j, std::size_t i, double apart) { return add(i, j, apart); });
+}
+
+/// Each face before is handed to the one after that its middle is nearest to; one that gets none has the
+/// normals of the one before that its own middle is nearest to.
+bool Criteria::looks_alike(const Star& star) {
+  const auto nearest = [](const Star::Face& face, std::span<const Star::Face> faces) {
+    const DVec3 middle = (face.corner[0] + face.corner[1] + face.corner[2]) / 3.0;
+    std::pair<double, std::size_t> best{std::numeric_limits<double>::infinity(), 0};
+    for (std::size_t k = 0; k < faces.size(); ++k)
+      best = std::min(best, {squared_distance(middle, faces[k].corner), k});
+    return best.second;
+  };
+  normals_after_.assign(star.after.size(), Ball{});
+  if (star.after.empty()) return true;
+  for (const Star::Face& face : star.before) {
+    Ball& ball = normals_after_[nearest(face, star.after)];
+    ball = around(ball, normals_[face.record]);
+  }
+  for (std::size_t j = 0; j < star.after.size(); ++j) {
+    Ball& ball = normals_after_[j];
+    if (ball.radius < 0) ball = normals_[star.before[nearest(star.after[j], star.before)].record];
+    const DVec3 n = unit_normal(star.after[j].corner);
+    if (ball.radius < 0 || n == DVec3(0.0)) continue;
+    const DVec3 away = n - point_of(ball.centre);
+    if (std::sqrt(glm::dot(away, away)) + static_cast<double>(ball.radius) > chord_) return false;
+  }
+  return true;
+}
+
+void Criteria::keep(const Star& star) {
+  for (std::size_t j = 0; j < star.after.size(); ++j) {
+    if (!distances_.empty()) distances_[star.after[j].record] = distances_after_[j];
+    if (!normals_.empty()) normals_[star.after[j].record] = normals_after_[j];
+  }
+}
+
+double Criteria::distance(const CollapseMesh& mesh) const {
+  float most = 0;
+  for (std::uint32_t f = 0; f < distances_.size(); ++f)
+    if (mesh.face(4 * f).alive()) most = std::max(most, distances_[f]);
+  return static_cast<double>(most);
+}
+
+/// The smallest ball around both.
+Criteria::Ball Criteria::around(const Ball& a, const Ball& b) {
+  if (a.radius < 0) return b;
+  if (b.radius < 0) return a;
+  const DVec3 from = point_of(a.centre), way = point_of(b.centre) - from;
+  const double apart = std::sqrt(glm::dot(way, way)), ra = static_cast<double>(a.radius),
+               rb = static_cast<double>(b.radius);
+  if (apart + rb <= ra) return a;
+  if (apart + ra <= rb) return b;
+  const double radius = 0.5 * (apart + ra + rb);
+  const DVec3 centre = from + ((radius - ra) / apart) * way;
+  // A little larger: the centre is rounded.
+  return {{static_cast<float>(centre.x), static_cast<float>(centre.y), static_cast<float>(centre.z)},
+          rounded_up(radius + 2e-7)};
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,79 @@
+// What decides about a removal beside its quadric error.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <vkmesh/decimation/decimate.h>
+
+#include "decimation/legality/hausdorff_bound.h"
+#include "decimation/legality/local_change.h"
+#include "decimation/setup/frame.h"
+#include "mesh/edit/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+/// The criteria of DecimateCriteria, on stars in local units.
+class Criteria {
+ public:
+  /// 4 bytes a face if the distance is watched, 16 if normals are.
+  Criteria(const DecimateCriteria& criteria, const Frame& frame, const CollapseMesh& mesh);
+
+  /// Whether there is something to judge removals by.
+  [[nodiscard]] bool bounds() const { return bounds_; }
+  /// Whether `cost` is anything but the quadric error.
+  [[nodiscard]] bool ranks() const {
+    return criteria_.density_weight > 0 || criteria_.aspect_weight > 0 || criteria_.normal_weight > 0;
+  }
+  /// What the shape of a triangle weighs when the quadric error weighs 1.
+  [[nodiscard]] float shape_over_quadric() const {
+    constexpr double kLeast = 1e-3;
+    const double ratio = criteria_.aspect_weight / std::max(criteria_.quadric_weight, kLeast);
+    return static_cast<float>(ratio * ratio);
+  }
+  [[nodiscard]] bool watches_distance() const { return watches_distance_; }
+
+  /// What a removal costs, `quadric` included: a mean square times `area`, which all that it counts is in.
+  [[nodiscard]] float cost(float quadric, float area, const Star& star) const;
+
+  /// Whether no bound forbids the removal; `keep` may be called then.
+  [[nodiscard]] bool allow(const Star& star);
+  /// The removal that was allowed last is done.
+  void keep(const Star& star);
+
+  /// No point of the surface is farther than this from the original, nor the other way round; local units.
+  [[nodiscard]] double distance(const CollapseMesh& mesh) const;
+
+ private:
+  /// Around unit normals.
+  struct Ball {
+    std::array<float, 3> centre{};
+    float radius = -1;  // around none
+  };
+  static Ball around(const Ball& a, const Ball& b);
+  [[nodiscard]] bool is_far(const Star& star) const;
+  [[nodiscard]] bool stays_near(const Star& star);
+  [[nodiscard]] bool looks_alike(const Star& star);
+
+  DecimateCriteria criteria_;
+  bool watches_distance_, bounds_;
+  double edge_length2_ = std::numeric_limits<double>::infinity();
+  double distance_ = std::numeric_limits<double>::infinity();  // most
+  double chord_ = std::numeric_limits<double>::infinity();     // most, between unit normals
+  // By record of the face. How far it lies from the part of the original that it stands for, and that from
+  // it; the normals of the original's faces that were handed to it.
+  std::vector<float> distances_;
+  std::vector<Ball> normals_;
+  // Of the star that was allowed last.
+  std::vector<float> distances_after_;
+  std::vector<Ball> normals_after_;
+  Overlay overlay_;
+};
+
+/// The longest side over the height upon it, 1 for equilateral triangles; infinite without area.
+[[nodiscard]] double aspect_ratio(const Triangle& triangle);
+
+}  // namespace vkmesh::detail

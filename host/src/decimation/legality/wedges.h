@@ -1,0 +1,250 @@
+// Where attributes are continuous, and where they are not.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/edit/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+/// On which sides of the seam through a vertex its neighbours stand, which are counted counter-clockwise from
+/// one end of it: to the other end, `last`, on side 0, and from there on and the first again on side 1. Where
+/// no seam passes, all stand on side 0.
+struct SeamSides {
+  std::size_t last;
+  bool parted;
+
+  [[nodiscard]] std::size_t count() const { return parted ? 2 : 1; }
+  [[nodiscard]] bool has(std::size_t side, std::size_t i) const {
+    return side == 0 ? i <= last : i == 0 || i >= last;
+  }
+  /// Whether the edge of neighbours a < b has these on both sides.
+  [[nodiscard]] bool cross(std::size_t a, std::size_t b) const {
+    return parted && a > 0 && a < last && b > last;
+  }
+  /// Of a triangle no edge of which crosses; `c` is its last corner.
+  [[nodiscard]] std::size_t of(std::size_t c) const { return c <= last ? 0 : 1; }
+};
+
+/// The corners of each vertex in wedges (H. Hoppe, "Efficient implementation of progressive meshes", 1998):
+/// those that follow each other around it with the same attributes. An edge whose sides are of different
+/// wedges at one of its ends, or both, is a seam.
+///
+/// Where two seams pass through a vertex inside the surface and part its corners into two wedges, it may move
+/// and go, along the seam. Any other vertex of a seam (where seams end, meet or reach the boundary) is fixed.
+class Wedges {
+ public:
+  /// `same(c, d)`: whether two corners of the input, at one vertex, have the same attributes. Locks the
+  /// vertices that are fixed. O(n).
+  template <class Same>
+  Wedges(CollapseMesh& mesh, std::size_t vertex_count, Same&& same)
+      : of_(4 * mesh.face_count(), kInvalid), marks_(vertex_count, 0) {
+    for (std::uint32_t v = 0; v < vertex_count; ++v)
+      if (mesh.vertices[v].alive()) part(mesh, v, same);
+    for (std::uint32_t v = 0; v < vertex_count; ++v)
+      if (mesh.vertices[v].alive()) mark(mesh, v);
+  }
+
+  [[nodiscard]] std::size_t count() const { return source_corner_.size(); }
+  /// Of the corner where h starts, which must not be of a ghost.
+  [[nodiscard]] std::uint32_t operator[](std::uint32_t h) const { return of_[h]; }
+  /// The first corner of the input that the wedge had.
+  [[nodiscard]] std::uint32_t source_corner(std::uint32_t wedge) const { return source_corner_[wedge]; }
+
+  [[nodiscard]] static std::uint32_t source_corner(const CollapseMesh& mesh, std::uint32_t h) {
+    return 3 * mesh.face(h).source + (h & 3u);
+  }
+
+  [[nodiscard]] bool on_seam(std::uint32_t v) const { return (marks_[v] & kSeam) != 0; }
+  [[nodiscard]] bool is_seam(const CollapseMesh& mesh, std::uint32_t h) const {
+    const std::uint32_t t = mesh.twin(h);
+    if (mesh.is_ghost(h) || mesh.is_ghost(t)) return false;
+    return of_[h] != of_[CollapseMesh::next(t)] || of_[CollapseMesh::next(h)] != of_[t];
+  }
+
+  /// Whether the seams and the boundary are, after the collapse of h, the same curves as before, each chart
+  /// between them is left, and all wedges find one to become part of: the link condition of the complex in
+  /// which they are edges of their own.
+  [[nodiscard]] bool keeps_seams(const CollapseMesh& mesh, std::uint32_t h) const {
+    const std::uint32_t t = mesh.twin(h);
+    const std::uint8_t p = marks_[mesh.origin(h)], q = marks_[mesh.origin(t)];
+    if (((p | q) & kSeam) == 0) return true;
+    const bool seam = is_seam(mesh, h);
+    if (p != 0 && q != 0 && !seam && !on_boundary(mesh, h)) return false;
+    if (seam && (of_[h] == of_[CollapseMesh::next(t)] || of_[CollapseMesh::next(h)] == of_[t])) return false;
+    for (const std::uint32_t g : {h, t})
+      if (!mesh.is_ghost(g) && is_curve(mesh, CollapseMesh::next(g)) &&
+          is_curve(mesh, CollapseMesh::previous(g)))
+        return false;
+    return true;
+  }
+
+  /// Calls f(p's wedge, q's wedge) for those that the collapse of h = p → q makes one: two at a seam, else
+  /// one.
+  template <class F>
+  void for_each_pair(const CollapseMesh& mesh, std::uint32_t h, F&& f) const {
+    const std::uint32_t t = mesh.twin(h);
+    std::uint32_t p = kInvalid, q = kInvalid;
+    if (!mesh.is_ghost(h)) {
+      p = of_[h];
+      q = of_[CollapseMesh::next(h)];
+      f(p, q);
+    }
+    if (mesh.is_ghost(t)) return;
+    const std::uint32_t p2 = of_[CollapseMesh::next(t)], q2 = of_[t];
+    if (p2 != p || q2 != q) f(p2, q2);
+  }
+
+  /// Calls f(wedge) once for each wedge of a vertex.
+  template <class F>
+  void for_each_at(const CollapseMesh& mesh, std::uint32_t v, F&& f) const {
+    const std::uint32_t start = first_of_a_wedge(mesh, mesh.vertices[v].leading);
+    std::uint32_t h = start, last = kInvalid;
+    do {
+      if (!mesh.is_ghost(h) && of_[h] != last) {
+        last = of_[h];
+        f(last);
+      }
+      h = mesh.around_vertex(h);
+    } while (h != start);
+  }
+
+  /// To be called before the mesh collapses h = p → q: p's corners become q's.
+  void collapse(const CollapseMesh& mesh, std::uint32_t h) {
+    const std::uint32_t t = mesh.twin(h), p = mesh.origin(h), q = mesh.origin(t);
+    const std::uint32_t on_left = mesh.is_ghost(h) ? kInvalid : of_[h];
+    for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out))
+      if (!mesh.is_ghost(out)) of_[out] = of_[out] == on_left ? of_[CollapseMesh::next(h)] : of_[t];
+    marks_[q] |= marks_[p];
+  }
+
+  // What follows is for vertices that go and leave a hole. `edges` are all that leave one which is not fixed,
+  // counter-clockwise, of `neighbours` on the mesh; the apex is the target of the last if of any, and the
+  // first is a seam if any are.
+
+  [[nodiscard]] SeamSides sides(const CollapseMesh& mesh, std::span<const std::uint32_t> edges,
+                                std::size_t neighbours) const {
+    std::size_t last = neighbours - 1;
+    if (!on_seam(mesh.origin(edges[0]))) return {last, false};
+    while (!is_seam(mesh, edges[last])) --last;
+    return {last, true};
+  }
+  /// The vertex's own wedge on a side.
+  [[nodiscard]] std::uint32_t on_side(std::span<const std::uint32_t> edges, const SeamSides& sides,
+                                      std::size_t side) const {
+    return of_[edges[side == 0 ? 0 : sides.last]];
+  }
+  /// That of a neighbour who stands on this side.
+  [[nodiscard]] std::uint32_t of_neighbour(std::span<const std::uint32_t> edges, const SeamSides& sides,
+                                           std::size_t side, std::size_t i) const {
+    if (i != (side == 0 ? sides.last : 0)) return of_[CollapseMesh::next(edges[i])];
+    return of_[CollapseMesh::previous(edges[i > 0 ? i - 1 : edges.size() - 1])];
+  }
+
+  /// The same as for collapses, where triangles fill the hole on each side of a seam for itself, and the edge
+  /// between both is the seam from then on.
+  [[nodiscard]] bool keeps_seams(const CollapseMesh& mesh, std::span<const std::uint32_t> edges,
+                                 const SeamSides& sides) const {
+    const auto across = [&](std::size_t i) { return CollapseMesh::next(edges[i]); };
+    const std::size_t last = sides.last;
+    if (!sides.parted) {
+      const bool is_ear = edges.size() == 3 && mesh.is_ghost(edges[2]);
+      return !is_ear || !is_seam(mesh, across(0));
+    }
+    // Where a side is one face, none takes its place, and the edge across becomes the seam.
+    if (last == 1 && is_curve(mesh, across(0))) return false;
+    if (last + 1 == edges.size() && is_curve(mesh, across(last))) return false;
+    const auto differs = [&](std::size_t i) {
+      return of_neighbour(edges, sides, 0, i) != of_neighbour(edges, sides, 1, i);
+    };
+    return differs(0) || differs(last);
+  }
+
+  /// To be called before the mesh fills the hole with the same.
+  void fill_hole(std::span<const std::uint32_t> edges, std::size_t neighbours, const SeamSides& sides,
+                 std::span<const std::array<std::uint8_t, 3>> triangles, std::size_t first) {
+    std::array<std::array<std::uint32_t, 3>, CollapseMesh::kMostAtHole> made;
+    std::size_t count = 0;
+    for (const auto& corners : triangles) {
+      if (corners[2] == neighbours) continue;  // closes the boundary
+      const std::size_t side = sides.of(corners[2]);
+      for (std::size_t i = 0; i < 3; ++i) made[count][i] = of_neighbour(edges, sides, side, corners[i]);
+      ++count;
+    }
+    for (std::size_t t = 0; t < count; ++t)
+      for (std::uint32_t i = 0; i < 3; ++i)
+        of_[(edges[(first + t) % (edges.size() - 1)] & ~3u) + i] = made[t][i];
+  }
+
+ private:
+  static constexpr std::uint8_t kSeam = 1, kBoundary = 2;
+
+  static bool on_boundary(const CollapseMesh& mesh, std::uint32_t h) {
+    return mesh.is_ghost(h) || mesh.is_ghost(mesh.twin(h));
+  }
+  [[nodiscard]] bool is_curve(const CollapseMesh& mesh, std::uint32_t h) const {
+    return on_boundary(mesh, h) || is_seam(mesh, h);
+  }
+  // The half-edge that leaves the same vertex, clockwise.
+  static std::uint32_t before(const CollapseMesh& mesh, std::uint32_t h) {
+    return CollapseMesh::next(mesh.twin(h));
+  }
+  [[nodiscard]] std::uint32_t first_of_a_wedge(const CollapseMesh& mesh, std::uint32_t start) const {
+    const auto of = [&](std::uint32_t h) { return mesh.is_ghost(h) ? kInvalid : of_[h]; };
+    std::uint32_t h = start;
+    while (of(h) == of(before(mesh, h))) {
+      h = mesh.around_vertex(h);
+      if (h == start) break;
+    }
+    return h;
+  }
+
+  template <class Same>
+  void part(const CollapseMesh& mesh, std::uint32_t v, Same&& same) {
+    const auto begins = [&](std::uint32_t h) {
+      const std::uint32_t b = before(mesh, h);
+      return mesh.is_ghost(h) || mesh.is_ghost(b) || !same(source_corner(mesh, h), source_corner(mesh, b));
+    };
+    const std::uint32_t leading = mesh.vertices[v].leading;
+    std::uint32_t start = leading;
+    while (!begins(start)) {
+      start = mesh.around_vertex(start);
+      if (start == leading) break;
+    }
+    std::uint32_t h = start;
+    do {
+      if (!mesh.is_ghost(h)) {
+        if (h == start || begins(h)) source_corner_.push_back(source_corner(mesh, h));
+        of_[h] = static_cast<std::uint32_t>(source_corner_.size() - 1);
+      }
+      h = mesh.around_vertex(h);
+    } while (h != start);
+  }
+
+  void mark(CollapseMesh& mesh, std::uint32_t v) {
+    const std::uint32_t start = mesh.vertices[v].leading;
+    std::size_t seams = 0, wedges = 0;
+    bool boundary = false;
+    std::uint32_t h = start;
+    do {
+      boundary |= mesh.is_ghost(h);
+      seams += is_seam(mesh, h) ? 1 : 0;
+      h = mesh.around_vertex(h);
+    } while (h != start);
+    for_each_at(mesh, v, [&](std::uint32_t) { ++wedges; });
+    if (boundary) marks_[v] |= kBoundary;
+    if (seams == 0) return;
+    marks_[v] |= kSeam;
+    if (boundary || seams != 2 || wedges != 2) mesh.vertices[v].source |= CollapseVertex::kLocked;
+  }
+
+  std::vector<std::uint32_t> of_;             // by half-edge of the mesh's own faces
+  std::vector<std::uint32_t> source_corner_;  // by wedge
+  std::vector<std::uint8_t> marks_;           // by vertex
+};
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,211 @@
+#include "decimation/parallel/coarsen.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "base/parallel.h"
+#include "base/prefetch.h"
+
+namespace vkmesh::detail {
+namespace {
+
+/// No edge is parked during a sweep.
+constexpr std::uint32_t kWent = CollapseVertex::kHasParked;
+/// Faces turn by 30 degrees at most.
+constexpr float kCosSmooth = 0.8660254f;
+/// Batches are taken from so many candidates that they stay in the second cache, and of distant ones:
+/// neighbours in a batch would come in each other's way.
+constexpr std::size_t kApart = 16, kAtOnce = kApart * SweepBatch::kSize;
+
+/// How many times as much there is as may be left, of faces or vertices.
+double times_the_target(const DecimationState& state) {
+  const auto times = [](std::size_t now, std::size_t target) {
+    return static_cast<double>(now) / static_cast<double>(std::max<std::size_t>(target, 1));
+  };
+  return std::min(times(state.faces, state.limits.faces), times(state.vertices, state.limits.vertices));
+}
+
+}  // namespace
+
+VertexSweep::VertexSweep(DecimationState& state, const Stretch& stretch, float most)
+    : state_(state),
+      mesh_(state.mesh),
+      vertices_(state.mesh.vertices),
+      stretch_(stretch),
+      most_(most),
+      merger_(state.mesh) {}
+
+bool VertexSweep::is_candidate(std::uint32_t v) const {
+  return vertices_[v].alive() && !vertices_[v].has(CollapseVertex::kLocked);
+}
+
+void VertexSweep::run_over_all() {
+  std::vector<std::uint32_t> candidates;
+  candidates.reserve(kAtOnce);
+  for (std::uint32_t v = stretch_.begin; v < stretch_.end && !state_.reached(); ++v) {
+    prefetch_stream(&vertices_[v]);
+    if (!is_candidate(v)) continue;
+    prefetch(mesh_.faces() + vertices_[v].leading / 4);
+    candidates.push_back(v);
+    if (candidates.size() < kAtOnce) continue;
+    sweep(candidates);
+    candidates.clear();
+  }
+  sweep(candidates);
+}
+
+void VertexSweep::run(std::span<const std::uint32_t> candidates) {
+  const auto some = [&](std::size_t from) {
+    from = std::min(from, candidates.size());
+    return candidates.subspan(from, std::min(kAtOnce, candidates.size() - from));
+  };
+  for (std::size_t i = 0; i < candidates.size(); i += kAtOnce) {
+    for (const std::uint32_t v : some(i + 2 * kAtOnce)) prefetch(&vertices_[v]);
+    for (const std::uint32_t v : some(i + kAtOnce))
+      prefetch(mesh_.faces() + (vertices_[v].alive() ? vertices_[v].leading / 4 : 0));
+    sweep(some(i));
+  }
+}
+
+void VertexSweep::sweep(std::span<const std::uint32_t> candidates) {
+  std::array<std::uint32_t, SweepBatch::kSize> some;
+  for (std::size_t first = 0; first < kApart; ++first) {
+    std::size_t count = 0;
+    for (std::size_t k = first; k < candidates.size(); k += kApart) {
+      some[count] = candidates[k];
+      count += vertices_[candidates[k]].alive() ? 1 : 0;
+    }
+    batch_->set(mesh_, std::span(some).first(count), stretch_);
+    sweep_batch();
+  }
+}
+
+void VertexSweep::sweep_batch() {
+  const SweepBatch& batch = *batch_;
+  std::array<std::uint8_t, SweepBatch::kSize> due;
+  std::size_t due_count = 0;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    due[due_count] = static_cast<std::uint8_t>(i);
+    due_count +=
+        static_cast<std::size_t>(batch.has_best(i)) & static_cast<std::size_t>(batch.cost_of(i) <= most_);
+    if (batch.is_inside[i] == 0) [[unlikely]]
+      left_out_.push_back(batch.vertex[i]);
+  }
+  for (const std::uint8_t i : std::span(due).first(due_count))
+    at_target_[i].walk(mesh_, mesh_.twin(batch.ring[i].edge[batch.best_of(i)]));
+  for (const std::uint8_t i : std::span(due).first(due_count)) attempt(i);
+  for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
+  touched_.clear();
+}
+
+void VertexSweep::attempt(std::size_t i) {
+  const SweepBatch& batch = *batch_;
+  const SweepBatch::Ring &at_p = batch.ring[i], &at_q = at_target_[i];
+  const std::uint32_t best = batch.best_of(i), h = at_p.edge[best];
+  const std::uint32_t p = batch.vertex[i], q = at_p.vertex[best];
+  const std::uint32_t size = at_q.size(mesh_.twin(h));
+  const CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
+  if (size == 0 || ((vp.source | vq.source) & CollapseVertex::kTouched) != 0 || state_.reached()) return;
+  if (!at_q.is_inside(stretch_)) {
+    left_out_.push_back(p);
+    return;
+  }
+  const auto some = [](const std::array<std::uint32_t, 3 * SweepBatch::kMost>& words, std::size_t first,
+                       std::size_t count) { return EdgeRings::Ring(words).subspan(first, count); };
+  const EdgeRings rings{some(at_p.vertex, best + 1, batch.size[i] - 1), some(at_q.vertex, 0, size - 1),
+                        some(at_p.edge, best + 1, batch.size[i] - 1), some(at_q.edge, 0, size - 1)};
+  // The rings are as they were unless a vertex of theirs went.
+  if ((merger_.look_around(rings) & kWent) != 0) return;
+  const DueEdge edge{
+      h,
+      batch.cost_of(i),
+      2,
+      {vq.position[0] - vp.position[0], vq.position[1] - vp.position[1], vq.position[2] - vp.position[2]}};
+  const float cos_deviation = std::max(state_.limits.cos_deviation, kCosSmooth);
+  if (merger_.judge(edge, p, q, rings, cos_deviation) != Legality::kLegal) return;
+  merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q, rings), 0);
+  touched_.push_back(q);
+  vertices_[p].source |= kWent;
+}
+
+float cost_of_share(const CollapseMesh& mesh, double share) {
+  constexpr std::size_t kSample = 4096;
+  const auto batch = std::make_unique<SweepBatch>();
+  std::vector<float> costs;
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t k = 0; k < kSample; ++k) {
+    const auto v = static_cast<std::uint32_t>(spread_evenly(k, mesh.apex()));
+    if (mesh.vertices[v].alive() && !mesh.vertices[v].has(CollapseVertex::kLocked)) some.push_back(v);
+    if (some.size() < SweepBatch::kSize && k + 1 < kSample) continue;
+    batch->set(mesh, some, {0, mesh.apex()});
+    for (std::size_t i = 0; i < batch->count; ++i)
+      if (batch->has_best(i)) costs.push_back(batch->cost_of(i));
+    some.clear();
+  }
+  if (costs.empty()) return 0;
+  const auto nth = costs.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(costs.size() - 1));
+  std::nth_element(costs.begin(), nth, costs.end());
+  return *nth;
+}
+
+void sweep_if_far(DecimationState& state) {
+  constexpr double kFar = 8, kFarther = 16;
+  const CollapseMesh& mesh = state.mesh;
+  const double times = times_the_target(state);
+  if (mesh.face_count() < 2 * state.part_faces || times < kFar || state.criteria != nullptr ||
+      state.attributes != nullptr || state.keep_events ||
+      state.limits.error2 < std::numeric_limits<double>::infinity())
+    return;
+  // The costliest tenth of the vertices is left to the queue, and what costs as much by then. The farther the
+  // target, the more all costs in the end, and the less it matters.
+  constexpr double kShare = 0.9;
+  const float most =
+      cost_of_share(mesh, kShare) * static_cast<float>(std::clamp(times / kFarther, 1.0, 64.0));
+
+  // First as they follow each other, and then what is at their ends, from one's middle to the next's.
+  const std::size_t n = mesh.apex(),
+                    count = std::max<std::size_t>(mesh.face_count() / state.stretch_faces, 1);
+  const auto at_half = [&](std::size_t k) { return static_cast<std::uint32_t>(n * k / (2 * count)); };
+  std::vector<std::vector<std::uint32_t>> left_out(count);
+  const auto side_by_side = [&](std::size_t stretches, auto&& stretch_of, auto&& sweep) {
+    const double faces = static_cast<double>(state.faces - state.limits.faces),
+                 vertices = static_cast<double>(state.vertices - state.limits.vertices);
+    std::vector<std::unique_ptr<PartState>> parts(stretches);
+    for (auto& part : parts) part = std::make_unique<PartState>(state);
+    parallel_ranges(stretches, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Stretch stretch = stretch_of(i);
+        const double share = static_cast<double>(stretch.end - stretch.begin) / static_cast<double>(n);
+        parts[i]->start(static_cast<std::size_t>(share * faces), static_cast<std::size_t>(share * vertices));
+        sweep(i, VertexSweep(parts[i]->state, stretch, most));
+      }
+    });
+    for (const auto& part : parts) part->report_to(state);
+  };
+  side_by_side(
+      count,
+      [&](std::size_t i) {
+        return Stretch{at_half(2 * i), at_half(2 * i + 2)};
+      },
+      [&](std::size_t i, VertexSweep&& sweep) {
+        sweep.run_over_all();
+        left_out[i].assign(sweep.left_out().begin(), sweep.left_out().end());
+      });
+  if (state.reached()) return;
+  side_by_side(
+      count - 1,
+      [&](std::size_t i) {
+        return Stretch{at_half(2 * i + 1), at_half(2 * i + 3)};
+      },
+      [&](std::size_t i, VertexSweep&& sweep) {
+        std::vector<std::uint32_t> candidates;
+        for (const auto& some : {left_out[i], left_out[i + 1]})
+          for (const std::uint32_t v : some)
+            if (v >= at_half(2 * i + 1) && v < at_half(2 * i + 3)) candidates.push_back(v);
+        sweep.run(candidates);
+      });
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,60 @@
+// What a surface that is far from its target loses at once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "decimation/decimation_state.h"
+#include "decimation/edge_merger.h"
+#include "decimation/parallel/coarsen_batch.h"
+#include "mesh/edit/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+/// Merges vertices into neighbours in the order of memory, with no queue, up to a cost: what goes first of so
+/// many leaves hardly a trace in the end. Each vertex goes to where that costs least, where the surface is
+/// smooth, and those that stay do not move; the collapses that follow place them anew, by all the planes.
+///
+/// It keeps to a stretch. Where a vertex has a neighbour elsewhere, it neither goes nor takes another in: no
+/// face that has a corner elsewhere changes, and of a vertex next to those elsewhere nothing but where its
+/// fan begins. So several stretches can be swept side by side.
+class VertexSweep {
+ public:
+  /// No vertex goes at more than the cost `most`. `state`: of this stretch, or of all.
+  VertexSweep(DecimationState& state, const Stretch& stretch, float most);
+
+  void run_over_all();
+  /// Over these, in this order.
+  void run(std::span<const std::uint32_t> candidates);
+  /// Those that could not go because of what lies beyond the stretch; at the boundary, too.
+  [[nodiscard]] std::span<const std::uint32_t> left_out() const { return left_out_; }
+
+ private:
+  [[nodiscard]] bool is_candidate(std::uint32_t v) const;
+  void sweep(std::span<const std::uint32_t> candidates);
+  void sweep_batch();
+  void attempt(std::size_t i);
+
+  DecimationState& state_;
+  CollapseMesh& mesh_;
+  LargeArray<CollapseVertex>& vertices_;
+  Stretch stretch_;
+  float most_;
+  EdgeMerger<false> merger_;
+  std::unique_ptr<SweepBatch> batch_ = std::make_unique<SweepBatch>();
+  std::vector<SweepBatch::Ring> at_target_ = std::vector<SweepBatch::Ring>(SweepBatch::kSize);
+  std::vector<std::uint32_t> touched_;  // and kept, by this batch
+  std::vector<std::uint32_t> left_out_;
+};
+
+/// What this share of the vertices would cost at most, by a sample; 0 where there are none.
+[[nodiscard]] float cost_of_share(const CollapseMesh& mesh, double share);
+
+/// Sweeps a large surface that is so far from its target that the order of what goes first hardly matters,
+/// where no error is promised: a history tells that order. O(n), on all cores; what goes does not depend on
+/// how many there are. Does nothing else.
+void sweep_if_far(DecimationState& state);
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,87 @@
+#include "decimation/parallel/coarsen_batch.h"
+
+#include <algorithm>
+
+#include "simd/target_clones.h"
+#include "simd/transpose.h"
+
+namespace vkmesh::detail {
+namespace {
+
+constexpr std::uint32_t kMost = SweepBatch::kMost;
+
+// The first words of the neighbours' records, and what their quadrics say at their own places.
+#if defined(VKMESH_HAS_CLONES)
+__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    SweepBatch::Around& around = batch.around[i];
+    std::array<const void*, 8> rows;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k]];
+      rows[k] = &neighbour;
+      around.c[k] = neighbour.c;
+    }
+    turn_eight(rows, {around.words[0].data(), around.words[1].data(), around.words[2].data(),
+                      around.words[3].data()});
+  }
+}
+
+__attribute__((target("default")))
+#endif
+void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    SweepBatch::Around& around = batch.around[i];
+    for (std::size_t k = 0; k < SweepBatch::kMost; k += 4) {
+      std::array<const void*, 4> rows;
+      for (std::size_t j = 0; j < 4; ++j) {
+        const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k + j]];
+        rows[j] = &neighbour;
+        around.c[k + j] = neighbour.c;
+      }
+      turn_four(rows, {&around.words[0][k], &around.words[1][k], &around.words[2][k], &around.words[3][k]});
+    }
+  }
+}
+
+VKMESH_CLONES void find_best(const CollapseVertex* vertices, const Stretch& stretch, SweepBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const CollapseVertex& p = vertices[batch.vertex[i]];
+    const SweepBatch::Ring& ring = batch.ring[i];
+    const SweepBatch::Around& around = batch.around[i];
+    const auto& a = p.a;
+    const auto& b = p.b;
+    std::uint32_t least = SweepBatch::kNone, outside = 0, size = kMost;
+    for (std::uint32_t k = 0; k < kMost; ++k) {
+      const float x = around.words[0][k] - p.position[0], y = around.words[1][k] - p.position[1],
+                  z = around.words[2][k] - p.position[2];
+      const float cost = quadric_value(a, b, p.c, x, y, z) + around.c[k];
+      const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMost * kMost + k;
+      least = least < bits ? least : bits;
+      outside |= stretch.holds(ring.vertex[k]) ? 0u : 1u;
+      const std::uint32_t last = ring.edge[k] == p.leading ? k : kMost;
+      size = size < last ? size : last;
+    }
+    batch.size[i] = size < kMost ? size + 1 : 0;
+    batch.is_inside[i] = 1 - outside;
+    batch.best[i] = outside != 0 || size == kMost ? SweepBatch::kNone : least;
+  }
+}
+
+}  // namespace
+
+void SweepBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const Stretch& stretch) {
+  const CollapseVertex* const vertices = mesh.vertices.data();
+  count = some.size();
+  std::copy(some.begin(), some.end(), vertex.begin());
+  for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[some[i]].leading);
+  gather_neighbours(vertices, *this);
+  find_best(vertices, stretch, *this);
+  for (std::size_t i = 0; i < count; ++i)
+    for (auto* const words : {&ring[i].vertex, &ring[i].edge}) {
+      std::array<std::uint32_t, kMost> first;
+      std::copy_n(words->begin(), kMost, first.begin());
+      std::copy_n(first.begin(), kMost, words->begin() + size[i]);
+    }
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,84 @@
+// The coordinates that decimation works in.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include <vkmesh/base/result.h>
+#include <vkmesh/math/vec.h>
+
+#include "base/parallel.h"
+
+namespace vkmesh::detail {
+
+/// Where the mesh was: local = (input - centre) · scale, the scale a power of two.
+struct Frame {
+  DVec3 centre{0.0};
+  double scale = 1;
+  double diagonal = 0;  // of the bounding box, in units of the input
+};
+
+/// Of the points that is_used(number), called on any threads, says are used. All points must be finite:
+/// kUnsuitable.
+template <class Point, class IsUsed>
+Result<Frame> frame_of(std::span<const Point> points, IsUsed&& is_used) {
+  struct Box {
+    DVec3 low{std::numeric_limits<double>::infinity()}, high = -low;
+    bool finite = true;
+    Box& operator+=(const Box& b) {
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], b.low[k]);
+        high[k] = std::max(high[k], b.high[k]);
+      }
+      finite &= b.finite;
+      return *this;
+    }
+  };
+  const auto box = parallel_sum<Box>(points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    Box part;
+    for (std::size_t v = begin; v < end; ++v) {
+      const Point& p = points[v];
+      part.finite &= std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      if (!is_used(v)) continue;
+      for (int k = 0; k < 3; ++k) {
+        const double x = p[k];
+        part.low[k] = std::min(part.low[k], x);
+        part.high[k] = std::max(part.high[k], x);
+      }
+    }
+    return part;
+  });
+  if (!box.finite) return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
+  const DVec3 &low = box.low, &high = box.high;
+  Frame frame;
+  if (low.x > high.x) return frame;  // nothing is used
+  const DVec3 size = high - low;
+  const double largest = std::max({size.x, size.y, size.z});
+  if (!std::isfinite(largest))
+    return fail(ErrorCode::kUnsuitable, "decimation needs a mesh of finite extent");
+  for (int k = 0; k < 3; ++k) frame.centre[k] = low[k] + 0.5 * size[k];
+  if (largest > 0) {
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    exponent = std::clamp(exponent, -1000, 1000);
+    frame.scale = std::ldexp(1.0, -exponent);
+    const DVec3 s = size * frame.scale;
+    frame.diagonal = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z) / frame.scale;
+  }
+  return frame;
+}
+
+template <class Point>
+Point point_of(const std::array<float, 3>& local, const Frame& frame) {
+  Point point;
+  for (int k = 0; k < 3; ++k)
+    point[k] = static_cast<typename Point::value_type>(
+        frame.centre[k] + static_cast<double>(local[static_cast<std::size_t>(k)]) / frame.scale);
+  return point;
+}
+
+}  // namespace vkmesh::detail

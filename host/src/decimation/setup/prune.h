@@ -1,0 +1,18 @@
+// Small components taken away before decimation.
+#pragma once
+
+#include <cstddef>
+
+#include "mesh/edit/collapse_mesh.h"
+
+namespace vkmesh::detail {
+
+struct Pruned {
+  std::size_t components = 0, faces = 0, vertices = 0;
+};
+
+/// Takes away each component whose bounding box has a diagonal of at most `size`, the one of most faces
+/// excepted. O(faces), 4 bytes a face for the time.
+Pruned prune_components(CollapseMesh& mesh, float size);
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,1291 @@
+// glTF 2.0 and its binary container GLB (Khronos Group, glTF 2.0 specification, ISO/IEC 12113:2022): the
+// triangles and points of a scene.
+//
+// tinygltf takes the structure out of the JSON, and writes files. It checks few numbers, so everything here
+// is checked before use; and the bytes of buffers are fetched here, because it looks for files in the current
+// folder and reads past the end of a GLB chunk.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <set>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/distinct_rows.h"
+#include "io/formats.h"
+#include "io/gltf/tinygltf.h"
+
+namespace vkmesh::detail {
+namespace {
+
+using Json = nlohmann::json;
+using glm::dmat3;
+using glm::dmat4;
+using glm::dvec4;
+
+constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
+constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
+/// Deeper JSON is refused, so that recursion over it needs little stack.
+constexpr int kDeepest = 64;
+/// The points and corners that instances, shared accessors and accessors without bytes may give: some for any
+/// file, and more in proportion to its size.
+constexpr std::uint64_t kFreeElements = std::uint64_t{1} << 24, kElementsPerByte = 256;
+
+// ------------------------------------------------------------------------------------------------- the
+// container
+
+struct Container {
+  std::string_view json;
+  std::optional<std::string_view> binary;
+};
+
+std::uint32_t load_u32(const char* at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, at, sizeof(value));
+  return value;
+}
+
+Result<Container> open_glb(const Source& source) {
+  const std::string_view bytes = source.bytes;
+  const char* begin = bytes.data();
+  if (bytes.size() < kGlbHeader + kChunkHeader)
+    return source.bad_byte(begin + bytes.size(), "the file ends within the 20 bytes that begin a GLB file");
+  if (load_u32(begin + 4) != 2)
+    return source.bad_byte(begin + 4, "version " + std::to_string(load_u32(begin + 4)) +
+                                          " of the GLB container is not supported, only 2");
+  const std::size_t length = load_u32(begin + 8);
+  if (length > bytes.size())
+    return source.bad_byte(begin + 8, "the header promises " + std::to_string(length) +
+                                          " bytes, but the file has " + std::to_string(bytes.size()));
+  Container container;
+  for (std::size_t at = kGlbHeader; at < length;) {
+    if (length - at < kChunkHeader) return source.bad_byte(begin + at, "a chunk header is cut short");
+    const std::size_t size = load_u32(begin + at), left = length - at - kChunkHeader;
+    const std::uint32_t type = load_u32(begin + at + 4);
+    if (size > left)
+      return source.bad_byte(begin + at, "a chunk promises " + std::to_string(size) + " bytes, but " +
+                                             std::to_string(left) + " are left");
+    const std::string_view chunk = bytes.substr(at + kChunkHeader, size);
+    if (at == kGlbHeader && type != kJsonChunk)
+      return source.bad_byte(begin + at, "the first chunk is no JSON");
+    if (at == kGlbHeader)
+      container.json = chunk;
+    else if (type == kBinaryChunk && !container.binary)
+      container.binary = chunk;
+    at += kChunkHeader + size;
+  }
+  if (container.json.empty()) return source.bad_byte(begin + kGlbHeader, "the JSON chunk is empty");
+  return container;
+}
+
+/// Whether brackets nest deeper than `limit`, strings apart.
+bool nests_deeper(std::string_view json, int limit) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > limit) return true;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return false;
+}
+
+// -------------------------------------------------------------------------------------------------- the
+// document
+
+const Json* member(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  const auto it = object.find(key);
+  return it == object.end() ? nullptr : &*it;
+}
+
+std::string string_member(const Json& object, const char* key) {
+  const Json* value = member(object, key);
+  return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
+}
+
+std::size_t array_size(const Json& document, const char* key) {
+  const Json* value = member(document, key);
+  return value != nullptr && value->is_array() ? value->size() : 0;
+}
+
+/// Percent-encoded bytes decoded (RFC 3986, section 2.1).
+std::string decode_percents(const std::string& uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned byte = 0;
+    if (uri[i] == '%' && uri.size() - i > 2 &&
+        std::from_chars(&uri[i + 1], &uri[i] + 3, byte, 16).ptr == &uri[i] + 3) {
+      out += static_cast<char>(byte);
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
+
+/// What a file holds for a mesh: the structure, the bytes, and the names of the materials.
+struct Asset {
+  tinygltf::Model model;
+  std::vector<std::string_view> buffers;
+  std::deque<std::vector<unsigned char>> owned;  ///< The bytes of those buffers that lie outside the file.
+  std::vector<std::string> materials;
+};
+
+class AssetReader {
+ public:
+  AssetReader(const Source& source, const Container& container, Notes& notes)
+      : source_(source), container_(container), notes_(notes) {}
+
+  Result<void> read(Asset& to) {
+    if (nests_deeper(container_.json, kDeepest))
+      return bad("the JSON nests deeper than " + std::to_string(kDeepest) + " levels");
+    Json document;
+    try {
+      document = Json::parse(container_.json.begin(), container_.json.end());
+    } catch (const Json::parse_error& e) {
+      const std::size_t at = std::min(e.byte > 0 ? e.byte - 1 : 0, container_.json.size());
+      return source_.bad_byte(container_.json.data() + at, "the JSON is malformed");
+    } catch (const Json::exception&) {
+      return bad("the JSON holds a number out of range");
+    }
+    VKMESH_CHECK(check_version(document));
+    VKMESH_CHECK(check_extensions(document));
+    VKMESH_CHECK(fetch_buffers(document, to));
+    if (const Json* materials = member(document, "materials"); materials != nullptr && materials->is_array())
+      for (const Json& material : *materials) to.materials.push_back(string_member(material, "name"));
+    note_ignored(document);
+    return read_structure(document, to.model);
+  }
+
+ private:
+  [[nodiscard]] tl::unexpected<Error> bad(std::string message) const {
+    return fail(ErrorCode::kUnreadable, std::move(message), {source_.name, {}, {}});
+  }
+
+  Result<void> check_version(const Json& document) const {
+    const Json* asset = member(document, "asset");
+    if (asset == nullptr) return bad("the JSON has no 'asset', so that it is no glTF");
+    const std::string version = string_member(*asset, "version"), least = string_member(*asset, "minVersion");
+    if (!version.starts_with("2.") || (!least.empty() && least != "2.0"))
+      return bad("version '" + (least.empty() ? version : least) + "' of glTF is not supported, only 2.0");
+    return {};
+  }
+
+  Result<void> check_extensions(const Json& document) {
+    // Those that concern how a surface looks, not where it is.
+    static constexpr std::string_view kHarmless[] = {"KHR_materials_", "KHR_texture_",         "EXT_texture_",
+                                                     "MSFT_texture_",  "KHR_lights_",          "EXT_lights_",
+                                                     "KHR_xmp",        "KHR_animation_pointer"};
+    const auto names = [&](const char* key) {
+      std::vector<std::string> found;
+      if (const Json* list = member(document, key); list != nullptr && list->is_array())
+        for (const Json& name : *list)
+          if (name.is_string() && name != "KHR_mesh_quantization") found.push_back(name.get<std::string>());
+      return found;
+    };
+    for (const std::string& name : names("extensionsRequired"))
+      if (std::none_of(std::begin(kHarmless), std::end(kHarmless),
+                       [&](std::string_view start) { return name.starts_with(start); }))
+        return bad("the file requires the extension " + name + ", which is not supported");
+    std::string ignored;
+    for (const std::string& name : names("extensionsUsed")) ignored += (ignored.empty() ? "" : ", ") + name;
+    if (!ignored.empty()) notes_.push_back("extensions ignored: " + ignored);
+    return {};
+  }
+
+  Result<void> fetch_buffers(const Json& document, Asset& to) {
+    const Json* buffers = member(document, "buffers");
+    if (buffers == nullptr || !buffers->is_array()) return {};
+    for (const Json& buffer : *buffers) {
+      const std::string name = "buffer " + std::to_string(to.buffers.size());
+      const Json* length = member(buffer, "byteLength");
+      if (length == nullptr || !length->is_number_unsigned()) return bad(name + " has no byteLength");
+      const auto promised = length->get<std::uint64_t>();
+      std::string_view bytes;
+      if (member(buffer, "uri") == nullptr) {
+        if (!to.buffers.empty() || !container_.binary)
+          return bad(name + " has neither a uri nor a chunk of this file");
+        bytes = *container_.binary;
+      } else {
+        std::vector<unsigned char>& owned = to.owned.emplace_back();
+        VKMESH_CHECK(fetch(string_member(buffer, "uri"), name, promised, owned));
+        bytes = {reinterpret_cast<const char*>(owned.data()), owned.size()};
+      }
+      if (bytes.size() < promised)
+        return bad(name + " promises " + std::to_string(promised) + " bytes, but has " +
+                   std::to_string(bytes.size()));
+      to.buffers.push_back(bytes.substr(0, promised));
+    }
+    return {};
+  }
+
+  Result<void> fetch(const std::string& uri, const std::string& name, std::uint64_t promised,
+                     std::vector<unsigned char>& to) {
+    if (uri.starts_with("data:")) {
+      std::string mime_type;
+      if (uri.size() > std::numeric_limits<int>::max() || !tinygltf::IsDataURI(uri) ||
+          (promised > 0 && !tinygltf::DecodeDataURI(&to, mime_type, uri, 0, false)))
+        return bad(
+            name +
+            " has a data URI that is no base64 of application/octet-stream or application/gltf-buffer");
+      return {};
+    }
+    const std::string shown = "'" + uri.substr(0, 200) + "'";
+    if (uri.empty()) return bad(name + " has an empty uri");
+    if (uri.find(':') < uri.find('/'))
+      return bad(name + " lies at " + shown + ", and only files and data: URIs are read");
+    const std::filesystem::path relative = decode_percents(uri);
+    if (relative.is_absolute())
+      return bad(name + " lies at the absolute path " + shown + ", and only relative ones are read");
+    if (!source_.folder)
+      return bad(name + " lies in the file " + shown +
+                 ", which only a glTF file read from a folder can name");
+    if (relative.lexically_normal().string().starts_with(".."))
+      notes_.push_back(name + " was read from " + shown + ", outside the folder of the file");
+    const std::filesystem::path path = *source_.folder / relative;
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code))
+      return bad(name + " lies in " + shown + ", which is no file");
+    const std::uintmax_t size = std::filesystem::file_size(path, code);
+    std::ifstream file(path, std::ios::binary);
+    to.resize(code ? 0 : static_cast<std::size_t>(std::min<std::uintmax_t>(size, promised)));
+    if (code || !file ||
+        !file.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size())))
+      return bad(name + " lies in " + shown + ", which cannot be read");
+    return {};
+  }
+
+  void note_ignored(const Json& document) {
+    const auto note = [&](const char* key, const char* what) {
+      if (const std::size_t count = array_size(document, key); count > 0)
+        notes_.push_back(std::to_string(count) + " " + what + " ignored");
+    };
+    note("images", "images");
+    note("skins", "skins");
+    note("animations", "animations");
+  }
+
+  Result<void> read_structure(Json& document, tinygltf::Model& to) const {
+    Json kept = Json::object();
+    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews"})
+      if (const auto it = document.find(key); it != document.end()) kept[key] = std::move(*it);
+    const std::string text = kept.dump();
+    if (text.size() > std::numeric_limits<unsigned>::max()) return bad("the JSON exceeds 4 GiB");
+    std::string error, warning;
+    tinygltf::TinyGLTF loader;
+    // Complaints that do not stop it tell of something that it dropped.
+    if (!loader.LoadASCIIFromString(&to, &error, &warning, text.data(), static_cast<unsigned>(text.size()),
+                                    "") ||
+        !error.empty())
+      return bad("the glTF structure is malformed: " +
+                 error.substr(0, std::min(error.find('\n'), error.size())));
+    return {};
+  }
+
+  const Source& source_;
+  const Container& container_;
+  Notes& notes_;
+};
+
+// ------------------------------------------------------------------------------------------------- the
+// accessors
+
+/// Calls visit with a value of the type that a component type names. False for one that names none.
+template <class Visit>
+bool with_component(int type, Visit&& visit) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      visit(std::int8_t{});
+      return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      visit(std::uint8_t{});
+      return true;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      visit(std::int16_t{});
+      return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      visit(std::uint16_t{});
+      return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      visit(std::uint32_t{});
+      return true;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      visit(float{});
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::size_t component_size(int type) {
+  std::size_t size = 0;
+  with_component(type, [&](auto value) { size = sizeof(value); });
+  return size;
+}
+
+/// 1 to 4, or 0 for matrices.
+unsigned components_of(const tinygltf::Accessor& accessor) {
+  switch (accessor.type) {
+    case TINYGLTF_TYPE_SCALAR:
+      return 1;
+    case TINYGLTF_TYPE_VEC2:
+      return 2;
+    case TINYGLTF_TYPE_VEC3:
+      return 3;
+    case TINYGLTF_TYPE_VEC4:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+/// A stored component as a value: whole numbers of a normalised accessor are fractions (specification, 3.11).
+template <class To, class From>
+To converted(From value, bool normalized) {
+  if constexpr (std::is_floating_point_v<To> && std::is_integral_v<From>) {
+    if (normalized)
+      return std::max(static_cast<To>(value) / static_cast<To>(std::numeric_limits<From>::max()), To{-1});
+  }
+  return static_cast<To>(value);
+}
+
+/// Gets the elements of accessors out of the buffers, never past what was promised.
+class AccessorReader {
+ public:
+  AccessorReader(const Source& source, const Asset& asset)
+      : source_(source), asset_(asset), budget_(kFreeElements + kElementsPerByte * source.bytes.size()) {
+    for (const std::string_view buffer : asset.buffers) budget_ += kElementsPerByte * buffer.size();
+  }
+
+  [[nodiscard]] tl::unexpected<Error> bad(std::string message) const {
+    return fail(ErrorCode::kUnreadable, std::move(message), {source_.name, {}, {}});
+  }
+
+  Result<const tinygltf::Accessor*> accessor(int index) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= asset_.model.accessors.size())
+      return bad("accessor " + std::to_string(index) + " of " +
+                 std::to_string(asset_.model.accessors.size()) + " is named");
+    return &asset_.model.accessors[static_cast<std::size_t>(index)];
+  }
+
+  /// All components of an accessor as To. Errors: kUnreadable when it reaches beyond its bytes, or when the
+  /// elements asked for so far are out of all proportion to the file.
+  template <class To>
+  Result<std::vector<To>> components(int index) {
+    VKMESH_TRY(const tinygltf::Accessor* const a, accessor(index));
+    const std::string name = "accessor " + std::to_string(index);
+    const unsigned width = components_of(*a);
+    const std::size_t size = component_size(a->componentType);
+    if (width == 0 || size == 0) return bad(name + " has a type that no vertex has");
+    if (a->count > std::min(budget_, kMaxElements))
+      return bad(name + " brings more elements than a file of this size may have");
+    budget_ -= a->count;
+
+    std::string_view bytes;
+    std::size_t stride = width * size;
+    if (a->bufferView >= 0) {
+      VKMESH_TRY(bytes, view(a->bufferView, name));
+      if (const std::size_t given =
+              asset_.model.bufferViews[static_cast<std::size_t>(a->bufferView)].byteStride;
+          given > 0) {
+        if (given < stride) return bad(name + " has elements longer than the stride");
+        stride = given;
+      }
+      VKMESH_TRY(bytes, part(bytes, a->byteOffset, a->count, width * size, stride, name));
+    }
+    std::vector<To> out(a->count * width);
+    if (a->bufferView >= 0)
+      with_component(a->componentType, [&](auto type) {
+        for (std::size_t i = 0; i < a->count; ++i)
+          for (std::size_t k = 0; k < width; ++k)
+            out[i * width + k] = load<To>(bytes.data() + i * stride + k * size, type, a->normalized);
+      });
+    if (a->sparse.isSparse) VKMESH_CHECK(overwrite(*a, name, out));
+    return out;
+  }
+
+ private:
+  template <class To, class From>
+  static To load(const char* at, From value, bool normalized) {
+    std::memcpy(&value, at, sizeof(value));
+    return converted<To>(value, normalized);
+  }
+
+  Result<std::string_view> view(int index, const std::string& user) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= asset_.model.bufferViews.size())
+      return bad(user + " names buffer view " + std::to_string(index) + " of " +
+                 std::to_string(asset_.model.bufferViews.size()));
+    const tinygltf::BufferView& view = asset_.model.bufferViews[static_cast<std::size_t>(index)];
+    const std::string name = "buffer view " + std::to_string(index);
+    if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= asset_.buffers.size())
+      return bad(name + " names buffer " + std::to_string(view.buffer) + " of " +
+                 std::to_string(asset_.buffers.size()));
+    const std::string_view buffer = asset_.buffers[static_cast<std::size_t>(view.buffer)];
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+      return bad(name + " reaches beyond its buffer");
+    return buffer.substr(view.byteOffset, view.byteLength);
+  }
+
+  /// The bytes from `offset` on, if `count` elements fit there.
+  Result<std::string_view> part(std::string_view bytes, std::size_t offset, std::size_t count,
+                                std::size_t element, std::size_t stride, const std::string& name) const {
+    if (offset > bytes.size() || (count > 0 && (bytes.size() - offset < element ||
+                                                count - 1 > (bytes.size() - offset - element) / stride)))
+      return bad(name + " reaches beyond its buffer view");
+    return bytes.substr(offset);
+  }
+
+  template <class To>
+  Result<void> overwrite(const tinygltf::Accessor& a, const std::string& name, std::vector<To>& out) const {
+    const std::size_t width = components_of(a), size = component_size(a.componentType);
+    const std::size_t index_size = component_size(a.sparse.indices.componentType);
+    if (a.sparse.count < 0 || static_cast<std::size_t>(a.sparse.count) > a.count || index_size == 0 ||
+        a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0)
+      return bad(name + " is sparse in a malformed way");
+    const auto count = static_cast<std::size_t>(a.sparse.count);
+    VKMESH_TRY(std::string_view indices, view(a.sparse.indices.bufferView, name));
+    VKMESH_TRY(indices, part(indices, static_cast<std::size_t>(a.sparse.indices.byteOffset), count,
+                             index_size, index_size, name));
+    VKMESH_TRY(std::string_view values, view(a.sparse.values.bufferView, name));
+    VKMESH_TRY(values, part(values, static_cast<std::size_t>(a.sparse.values.byteOffset), count, width * size,
+                            width * size, name));
+    for (std::size_t i = 0; i < count; ++i) {
+      // Every 32-bit index is exact in a double.
+      double at = -1;
+      with_component(a.sparse.indices.componentType,
+                     [&](auto type) { at = load<double>(indices.data() + i * index_size, type, false); });
+      if (!(at >= 0 && at < static_cast<double>(a.count)))
+        return bad(name + " replaces an element that it does not have");
+      with_component(a.componentType, [&](auto type) {
+        for (std::size_t k = 0; k < width; ++k)
+          out[static_cast<std::size_t>(at) * width + k] =
+              load<To>(values.data() + (i * width + k) * size, type, a.normalized);
+      });
+    }
+    return {};
+  }
+
+  const Source& source_;
+  const Asset& asset_;
+  std::uint64_t budget_;
+};
+
+// ----------------------------------------------------------------------------------------------------- the
+// scene
+
+/// An attribute of points that grows primitive by primitive. Points of a primitive without it get the fill
+/// value.
+struct GrowingChannel {
+  unsigned components = 0;
+  float fill = 0;
+  std::vector<float> values;
+  std::optional<int> component_type;  ///< What all primitives stored.
+  bool same_type = true, normalized = false;
+
+  /// Makes room for elements of `wanted` components.
+  void widen(unsigned wanted) {
+    if (wanted <= components) return;
+    std::vector<float> wider;
+    for (std::size_t i = 0; components > 0 && i < values.size(); ++i) {
+      wider.push_back(values[i]);
+      if ((i + 1) % components == 0) wider.insert(wider.end(), wanted - components, fill);
+    }
+    values = std::move(wider);
+    components = wanted;
+  }
+
+  void append(const std::vector<float>& more, unsigned width) {
+    for (std::size_t i = 0; i < more.size(); i += width) {
+      values.insert(values.end(), more.begin() + static_cast<std::ptrdiff_t>(i),
+                    more.begin() + static_cast<std::ptrdiff_t>(i + width));
+      values.insert(values.end(), components - width, fill);
+    }
+  }
+
+  /// Whole numbers come back as they were stored, and colours of bytes as bytes.
+  Channel finish(const std::string& name, std::size_t points) {
+    values.resize(points * components, fill);
+    Channel channel{name, components, {}};
+    const bool whole = same_type && component_type && normalized == (name == "color") &&
+                       *component_type != TINYGLTF_COMPONENT_TYPE_FLOAT &&
+                       (name == "color" ? *component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+                                        : *component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) &&
+                       name != "uv" && name != "normal";
+    if (!whole) {
+      channel.values = std::move(values);
+      return channel;
+    }
+    with_component(*component_type, [&](auto type) {
+      using T = decltype(type);
+      std::vector<T> stored;
+      stored.reserve(values.size());
+      for (const float v : values)
+        stored.push_back(static_cast<T>(name == "color" ? std::lround(v * 255) : std::lround(v)));
+      channel.values = std::move(stored);
+    });
+    return channel;
+  }
+};
+
+/// The name of the channel for an attribute of the file; empty for one that is not read.
+std::string channel_name(const std::string& attribute) {
+  if (attribute == "NORMAL") return "normal";
+  if (attribute == "TEXCOORD_0") return "uv";
+  if (attribute == "COLOR_0") return "color";
+  if (!attribute.starts_with('_')) return "";
+  std::string name = attribute.substr(1);
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return name == "normal" || name == "uv" || name == "color" ? "" : name;
+}
+
+class SceneReader {
+ public:
+  SceneReader(const Source& source, const Asset& asset, Notes& notes)
+      : source_(source),
+        model_(asset.model),
+        materials_(asset.materials),
+        notes_(notes),
+        accessors_(source, asset) {}
+
+  Result<IndexedFaceSet> read() {
+    if (model_.scenes.empty())
+      for (std::size_t m = 0; m < model_.meshes.size(); ++m)
+        VKMESH_CHECK(add_mesh(static_cast<int>(m), dmat4(1)));
+    else
+      VKMESH_CHECK(walk());
+    if (mesh_.points.empty()) return accessors_.bad("the file holds no points that a scene shows");
+    finish();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[nodiscard]] tl::unexpected<Error> bad(std::string message) const {
+    return accessors_.bad(std::move(message));
+  }
+
+  Result<void> walk() {
+    std::vector<int> roots;
+    if (model_.defaultScene >= 0) {
+      if (static_cast<std::size_t>(model_.defaultScene) >= model_.scenes.size())
+        return bad("the default scene is " + std::to_string(model_.defaultScene) + " of " +
+                   std::to_string(model_.scenes.size()));
+      roots = model_.scenes[static_cast<std::size_t>(model_.defaultScene)].nodes;
+      if (model_.scenes.size() > 1)
+        notes_.push_back(std::to_string(model_.scenes.size() - 1) + " scenes beside the default one ignored");
+    } else {
+      // Scenes may share roots.
+      std::set<int> seen;
+      for (const tinygltf::Scene& scene : model_.scenes)
+        for (const int root : scene.nodes)
+          if (seen.insert(root).second) roots.push_back(root);
+    }
+
+    struct Visit {
+      int node;
+      dmat4 parent;
+    };
+    std::vector<Visit> open;
+    const auto push = [&](const std::vector<int>& nodes, const dmat4& parent) {
+      for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent});
+    };
+    push(roots, dmat4(1));
+    std::vector<bool> reached(model_.nodes.size());
+    while (!open.empty()) {
+      const Visit visit = open.back();
+      open.pop_back();
+      const auto index = static_cast<std::size_t>(visit.node);
+      if (visit.node < 0 || index >= reached.size())
+        return bad("node " + std::to_string(visit.node) + " of " + std::to_string(reached.size()) +
+                   " is named");
+      if (reached[index])
+        return bad("node " + std::to_string(visit.node) +
+                   " is reached twice, so that the nodes form no tree");
+      reached[index] = true;
+      const tinygltf::Node& node = model_.nodes[index];
+      dmat4 local(1);
+      VKMESH_CHECK(transform(node, index, local));
+      const dmat4 world = visit.parent * local;
+      if (node.mesh >= 0) VKMESH_CHECK(add_mesh(node.mesh, world));
+      push(node.children, world);
+    }
+    return {};
+  }
+
+  Result<void> transform(const tinygltf::Node& node, std::size_t index, dmat4& to) const {
+    const auto fits = [](const std::vector<double>& v, std::size_t size) {
+      return v.empty() || v.size() == size;
+    };
+    if (!fits(node.matrix, 16) || !fits(node.translation, 3) || !fits(node.rotation, 4) ||
+        !fits(node.scale, 3))
+      return bad("node " + std::to_string(index) + " has a transformation of the wrong size");
+    if (!node.matrix.empty()) {
+      for (int i = 0; i < 16; ++i) to[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+      return {};
+    }
+    if (!node.rotation.empty()) {
+      const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+      to = glm::mat4_cast(glm::normalize(q));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      if (!node.scale.empty()) to[axis] *= node.scale[i];
+      if (!node.translation.empty()) to[3][axis] = node.translation[i];
+    }
+    return {};
+  }
+
+  Result<void> add_mesh(int index, const dmat4& world) {
+    if (index < 0 || static_cast<std::size_t>(index) >= model_.meshes.size())
+      return bad("mesh " + std::to_string(index) + " of " + std::to_string(model_.meshes.size()) +
+                 " is named");
+    const dmat3 linear(world);
+    // Normals go with the inverse transpose; up to their length that is the matrix of cofactors, which always
+    // exists.
+    const bool mirrored = glm::determinant(linear) < 0;
+    const dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                          glm::cross(linear[0], linear[1]));
+    place_ = {world, mirrored ? -cofactors : cofactors, mirrored, world == dmat4(1)};
+    // Primitives of one mesh that name the same accessors have their points in common.
+    std::map<std::map<std::string, int>, std::uint32_t> first_points;
+    for (const tinygltf::Primitive& primitive : model_.meshes[static_cast<std::size_t>(index)].primitives)
+      VKMESH_CHECK(add_primitive(primitive, first_points));
+    return {};
+  }
+
+  Result<void> add_primitive(const tinygltf::Primitive& primitive,
+                             std::map<std::map<std::string, int>, std::uint32_t>& first_points) {
+    VKMESH_CHECK(source_.tick(source_.bytes.data() + source_.bytes.size() / 2));
+    morphed_ += !primitive.targets.empty();
+    switch (primitive.mode) {
+      case TINYGLTF_MODE_LINE:
+      case TINYGLTF_MODE_LINE_LOOP:
+      case TINYGLTF_MODE_LINE_STRIP:
+        ++lines_;
+        return {};
+      case TINYGLTF_MODE_POINTS:
+      case TINYGLTF_MODE_TRIANGLES:
+      case TINYGLTF_MODE_TRIANGLE_STRIP:
+      case TINYGLTF_MODE_TRIANGLE_FAN:
+        break;
+      default:
+        return bad("a primitive has the mode " + std::to_string(primitive.mode) + ", which there is not");
+    }
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end()) {
+      ++without_position_;
+      return {};
+    }
+    if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) >= materials_.size())
+      return bad("material " + std::to_string(primitive.material) + " of " +
+                 std::to_string(materials_.size()) + " is named");
+    VKMESH_TRY(const tinygltf::Accessor* const points, accessors_.accessor(position->second));
+    const auto [known, is_new] =
+        first_points.try_emplace(primitive.attributes, static_cast<std::uint32_t>(mesh_.points.size()));
+    if (is_new) VKMESH_CHECK(add_points(primitive, position->second));
+    if (primitive.mode == TINYGLTF_MODE_POINTS) return {};
+
+    std::vector<std::uint32_t> order;
+    if (primitive.indices >= 0) {
+      VKMESH_TRY(const tinygltf::Accessor* const indices, accessors_.accessor(primitive.indices));
+      if (indices->type != TINYGLTF_TYPE_SCALAR ||
+          (indices->componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+           indices->componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+           indices->componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+        return bad("accessor " + std::to_string(primitive.indices) + " holds no indices");
+      VKMESH_TRY(order, accessors_.components<std::uint32_t>(primitive.indices));
+    } else {
+      order.resize(points->count);
+      for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+    }
+    for (const std::uint32_t i : order)
+      if (i >= points->count)
+        return bad("accessor " + std::to_string(primitive.indices) + " names point " + std::to_string(i) +
+                   " of " + std::to_string(points->count));
+    return add_faces(primitive, order, known->second);
+  }
+
+  Result<void> add_points(const tinygltf::Primitive& primitive, int position) {
+    const std::size_t before = mesh_.points.size();
+    VKMESH_TRY(const std::vector<float> coordinates, accessors_.components<float>(position));
+    VKMESH_TRY(const tinygltf::Accessor* const accessor, accessors_.accessor(position));
+    if (components_of(*accessor) != 3)
+      return bad("accessor " + std::to_string(position) + " holds no positions");
+    if (before + accessor->count > kMaxElements)
+      return bad("there are more points than 32-bit indices can number");
+    for (std::size_t i = 0; i < accessor->count; ++i) {
+      Vec3 p(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
+      if (!place_.identity) p = Vec3(DVec3(place_.world * dvec4(DVec3(p), 1)));
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        return bad("point " + std::to_string(i) + " of accessor " + std::to_string(position) +
+                   " has a coordinate that is not finite");
+      mesh_.points.push_back(p);
+    }
+    for (const auto& [attribute, index] : primitive.attributes)
+      if (attribute != "POSITION") VKMESH_CHECK(add_attribute(attribute, index, before));
+    return {};
+  }
+
+  Result<void> add_attribute(const std::string& attribute, int index, std::size_t before) {
+    const std::string name = channel_name(attribute);
+    if (name.empty()) {
+      ignored_attributes_.insert(attribute);
+      return {};
+    }
+    VKMESH_TRY(const tinygltf::Accessor* const accessor, accessors_.accessor(index));
+    const unsigned width = components_of(*accessor);
+    const bool fits = name == "normal"  ? width == 3
+                      : name == "uv"    ? width == 2
+                      : name == "color" ? width == 3 || width == 4
+                                        : width > 0;
+    if (!fits || accessor->count != mesh_.points.size() - before)
+      return bad("accessor " + std::to_string(index) + " does not fit the attribute " + attribute + " of " +
+                 std::to_string(mesh_.points.size() - before) + " points");
+    VKMESH_TRY(std::vector<float> values, accessors_.components<float>(index));
+    if (name == "normal" && !place_.identity)
+      for (std::size_t i = 0; i < values.size(); i += 3) {
+        const DVec3 n = place_.normals * DVec3(values[i], values[i + 1], values[i + 2]);
+        const double length = glm::length(n);
+        const Vec3 unit = length > 0 ? Vec3(n / length) : Vec3(0);
+        for (int axis = 0; axis < 3; ++axis) values[i + static_cast<std::size_t>(axis)] = unit[axis];
+      }
+    // Upwards here, as in OBJ; downwards in glTF.
+    if (name == "uv")
+      for (std::size_t i = 1; i < values.size(); i += 2) values[i] = 1 - values[i];
+    GrowingChannel& channel = channels_[name];
+    channel.fill = name == "color" ? 1.0f : 0.0f;
+    channel.widen(width);
+    channel.values.resize(before * channel.components, channel.fill);
+    channel.append(values, width);
+    if (!channel.component_type) {
+      channel.component_type = accessor->componentType;
+      channel.normalized = accessor->normalized;
+    }
+    channel.same_type = channel.same_type && *channel.component_type == accessor->componentType &&
+                        channel.normalized == accessor->normalized;
+    return {};
+  }
+
+  Result<void> add_faces(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& order,
+                         std::uint32_t first) {
+    const std::size_t n = order.size();
+    const bool separate = primitive.mode == TINYGLTF_MODE_TRIANGLES;
+    const std::size_t faces = separate ? n / 3 : n < 3 ? 0 : n - 2;
+    if (mesh_.corners.size() + 3 * faces > kMaxElements)
+      return bad("the faces have more corners than 32-bit indices can number");
+    left_over_ += separate ? n % 3 : n < 3 ? n : 0;
+    const auto material = primitive.material >= 0 ? static_cast<std::uint32_t>(primitive.material)
+                                                  : static_cast<std::uint32_t>(materials_.size());
+    for (std::size_t f = 0; f < faces; ++f) {
+      std::array<std::size_t, 3> at = {3 * f, 3 * f + 1, 3 * f + 2};
+      if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {f, f + 1 + f % 2, f + 2 - f % 2};
+      if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {f + 1, f + 2, 0};
+      if (place_.mirrored) std::swap(at[1], at[2]);
+      const std::array<std::uint32_t, 3> face = {order[at[0]], order[at[1]], order[at[2]]};
+      // Strips turn corners and jump by triangles without area.
+      if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP &&
+          (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])) {
+        ++turns_;
+        continue;
+      }
+      for (const std::uint32_t corner : face) mesh_.corners.push_back(first + corner);
+      face_materials_.push_back(material);
+    }
+    return {};
+  }
+
+  void finish() {
+    for (auto& [name, channel] : channels_)
+      mesh_.point_channels.push_back(channel.finish(name, mesh_.points.size()));
+    const auto none = static_cast<std::uint32_t>(materials_.size());
+    const auto without =
+        static_cast<std::size_t>(std::count(face_materials_.begin(), face_materials_.end(), none));
+    if (without < face_materials_.size()) {
+      Channel channel{"material", 1, std::move(face_materials_), materials_};
+      for (std::size_t i = 0; i < channel.labels.size(); ++i)
+        if (channel.labels[i].empty()) channel.labels[i] = "material " + std::to_string(i);
+      if (without > 0) channel.labels.emplace_back();
+      mesh_.face_channels.push_back(std::move(channel));
+    }
+    const auto note = [&](std::size_t count, const std::string& what) {
+      if (count > 0) notes_.push_back(std::to_string(count) + " " + what);
+    };
+    note(lines_, "primitives of lines ignored");
+    note(without_position_, "primitives without positions ignored");
+    note(morphed_, "primitives with morph targets read without them");
+    note(left_over_, "corners that complete no triangle ignored");
+    note(turns_, "triangles without area that join strips ignored");
+    for (const std::string& attribute : ignored_attributes_)
+      notes_.push_back("attribute " + attribute + " ignored");
+  }
+
+  struct Place {
+    dmat4 world;
+    dmat3 normals;
+    bool mirrored, identity;
+  };
+
+  const Source& source_;
+  const tinygltf::Model& model_;
+  const std::vector<std::string>& materials_;
+  Notes& notes_;
+  AccessorReader accessors_;
+  Place place_{dmat4(1), dmat3(1), false, true};
+  IndexedFaceSet mesh_;
+  std::map<std::string, GrowingChannel> channels_;
+  std::vector<std::uint32_t> face_materials_;  ///< materials_.size() for none.
+  std::set<std::string> ignored_attributes_;
+  std::size_t lines_ = 0, without_position_ = 0, morphed_ = 0, left_over_ = 0, turns_ = 0;
+};
+
+// ---------------------------------------------------------------------------------------------------- the
+// writer
+
+/// Passes on what is written to a stream.
+class OutputStream : public std::streambuf {
+ public:
+  explicit OutputStream(Output& out) : out_(out) {}
+
+ private:
+  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+    out_.put({bytes, static_cast<std::size_t>(count)});
+    return count;
+  }
+  int_type overflow(int_type c) override {
+    const char byte = traits_type::to_char_type(c);
+    out_.put({&byte, 1});
+    return c;
+  }
+
+  Output& out_;
+};
+
+/// Text as JSON must have it: bytes that are no UTF-8 become the replacement character.
+std::string valid_utf8(const std::string& text) {
+  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Json::parse(quoted).get<std::string>();
+}
+
+/// "_QUALITY" for "quality"; empty for a name that would not come back.
+std::string attribute_name(const std::string& channel) {
+  std::string name = "_";
+  for (const char c : channel) {
+    if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_') return "";
+    name += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  }
+  return name.size() > 1 && channel_name(name) == channel ? name : "";
+}
+
+/// Normals whose squared length is this near to 1 are unit vectors.
+constexpr double kUnit = 1e-5;
+
+class GltfWriter {
+ public:
+  GltfWriter(const IndexedFaceSet& mesh, const WriteOptions& options, Notes& notes)
+      : mesh_(mesh), options_(options), notes_(notes) {}
+
+  Result<void> write(Output& out) {
+    if (mesh_.points.empty()) return fail(ErrorCode::kUnsuitable, "glTF holds no mesh without points");
+    choose();
+    split();
+    put_positions();
+    put_normals();
+    put_uv();
+    put_colors();
+    for (const Channel* c : custom_) put_custom(*c);
+    put_faces();
+    if (bytes_.size() > kLargest) return fail(ErrorCode::kUnsuitable, "a glTF buffer holds less than 4 GiB");
+
+    model_.asset.version = "2.0";
+    if (const std::vector<std::string> comment = comment_lines(options_.comment); !comment.empty())
+      model_.asset.generator = valid_utf8(comment.front());
+    tinygltf::Buffer buffer;
+    buffer.data = std::move(bytes_);
+    model_.buffers.push_back(std::move(buffer));
+    tinygltf::Node node;
+    node.mesh = 0;
+    model_.nodes.push_back(node);
+    tinygltf::Scene scene;
+    scene.nodes = {0};
+    model_.scenes.push_back(scene);
+    model_.defaultScene = 0;
+    OutputStream streambuf(out);
+    std::ostream stream(&streambuf);
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, true,
+                                                options_.encoding != FileEncoding::kAscii);
+    return {};
+  }
+
+ private:
+  /// Leaves room for the JSON in the 32-bit length of a GLB file.
+  static constexpr std::size_t kLargest = 0xffffffffu - (std::size_t{1} << 24);
+
+  /// An attribute of points or corners that goes into the file.
+  struct Attribute {
+    const Channel* channel = nullptr;
+    bool of_corners = false;
+    explicit operator bool() const { return channel != nullptr; }
+  };
+
+  /// Settles which channels are written, and notes the others.
+  void choose() {
+    const auto pick = [&](const char* name, unsigned least, unsigned most) -> Attribute {
+      const Channel* c = mesh_.corners.empty() ? nullptr : find_channel(mesh_.corner_channels, name);
+      if (c != nullptr && c->components >= least && c->components <= most && finite(*c)) return {c, true};
+      c = find_channel(mesh_.point_channels, name);
+      if (c != nullptr && c->components >= least && c->components <= most && finite(*c)) return {c, false};
+      return {};
+    };
+    normal_ = pick("normal", 3, 3);
+    uv_ = pick("uv", 2, 2);
+    color_ = pick("color", 3, 4);
+    for (std::size_t i = 0; normal_ && i < normal_.channel->scalar_count(); i += 3)
+      if (!(squared_length(*normal_.channel, i) > 0)) {
+        note_left_out(notes_, normal_.of_corners ? "corner" : "point", *normal_.channel,
+                      "glTF holds unit normals, and some here have no length");
+        zero_normals_ = normal_.channel;
+        normal_ = {};
+      }
+    const auto taken = [&](const Channel& c) {
+      return &c == normal_.channel || &c == uv_.channel || &c == color_.channel || &c == zero_normals_;
+    };
+    for (const Channel& c : mesh_.point_channels) {
+      if (taken(c)) continue;
+      if (!finite(c))
+        note_left_out(notes_, "point", c, "some of its values are not finite");
+      else if (c.components >= 1 && c.components <= 4 && !attribute_name(c.name).empty() &&
+               c.labels.empty() && !std::holds_alternative<std::vector<double>>(c.values) &&
+               !std::holds_alternative<std::vector<std::int32_t>>(c.values) &&
+               !std::holds_alternative<std::vector<std::uint32_t>>(c.values))
+        custom_.push_back(&c);
+      else
+        note_left_out(notes_, "point", c, "glTF holds none of that name and type");
+    }
+    for (const Channel& c : mesh_.corner_channels)
+      if (!taken(c))
+        note_left_out(notes_, "corner", c,
+                      finite(c) ? "glTF holds normals, uv and colours of corners"
+                                : "some of its values are not finite");
+    for (const Channel& c : mesh_.face_channels) {
+      if (c.name == "material" && numbers_labels(c))
+        material_ = &c;
+      else
+        note_left_out(notes_, "face", c, "glTF holds named materials of faces");
+    }
+  }
+
+  static bool finite(const Channel& channel) {
+    const std::size_t count = channel.scalar_count();
+    for (std::size_t i = 0; i < count; ++i)
+      if (!std::isfinite(channel_float(channel, i))) return false;
+    return true;
+  }
+
+  static double squared_length(const Channel& channel, std::size_t i) {
+    const DVec3 n(channel_float(channel, i), channel_float(channel, i + 1), channel_float(channel, i + 2));
+    return glm::dot(n, n);
+  }
+
+  static std::optional<std::size_t> label_of(const Channel& channel, std::size_t face) {
+    const double value =
+        std::visit([&](const auto& v) { return static_cast<double>(v[face]); }, channel.values);
+    if (!(value >= 0 && value < static_cast<double>(channel.labels.size())) || value != std::floor(value))
+      return std::nullopt;
+    return static_cast<std::size_t>(value);
+  }
+
+  bool numbers_labels(const Channel& channel) const {
+    if (channel.components != 1) return false;
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f)
+      if (!label_of(channel, f)) return false;
+    return true;
+  }
+
+  /// Where the attribute of a vertex of the file stands.
+  [[nodiscard]] std::size_t source_of(const Attribute& attribute, std::size_t vertex) const {
+    return attribute.of_corners ? vertex_corner_[vertex] : vertex_point_[vertex];
+  }
+
+  /// A vertex for each point; or, where corners have attributes, for each different row of those around a
+  /// point, in order of first appearance, and for each point without corners at last.
+  void split() {
+    indices_ = mesh_.corners;
+    vertex_point_.resize(mesh_.points.size());
+    for (std::size_t i = 0; i < vertex_point_.size(); ++i) vertex_point_[i] = static_cast<std::uint32_t>(i);
+    const std::array<Attribute, 3> attributes = {normal_, uv_, color_};
+    if (std::none_of(attributes.begin(), attributes.end(),
+                     [](const Attribute& a) { return a && a.of_corners; }))
+      return;
+    using Row = std::array<float, 11>;  // The point in two exact halves, a normal, uv, a colour.
+    DistinctRows<11> distinct;
+    std::vector<Row> rows;
+    std::vector<bool> used(mesh_.points.size());
+    vertex_point_.clear();
+    for (std::size_t c = 0; c < mesh_.corners.size(); ++c) {
+      const std::uint32_t point = mesh_.corners[c];
+      Row row = {static_cast<float>(point & 0xffffu), static_cast<float>(point >> 16)};
+      std::size_t at = 2;
+      for (const Attribute& a : attributes)
+        if (a && a.of_corners)
+          for (unsigned k = 0; k < a.channel->components; ++k)
+            row[at++] = channel_float(*a.channel, c * a.channel->components + k);
+      indices_[c] = distinct.number(row.data(), rows);
+      used[point] = true;
+      if (indices_[c] == vertex_point_.size()) {
+        vertex_point_.push_back(point);
+        vertex_corner_.push_back(static_cast<std::uint32_t>(c));
+      }
+    }
+    // No corner gives them attributes, so they have none.
+    std::size_t alone = 0;
+    for (std::size_t i = 0; i < used.size(); ++i) alone += !used[i];
+    if (alone > 0)
+      notes_.push_back(std::to_string(alone) +
+                       " points without a face left out: they have no attributes of corners");
+  }
+
+  /// A buffer view and accessor over elements of `width` components that were appended from byte `begin` on.
+  template <class T>
+  int accessor(std::size_t begin, std::size_t count, unsigned width, std::size_t stride, int target,
+               bool normalized) {
+    static constexpr int kTypes[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
+                                     TINYGLTF_TYPE_VEC4};
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = begin;
+    view.byteLength = bytes_.size() - begin;
+    view.byteStride = stride == width * sizeof(T) ? 0 : stride;
+    view.target = target;
+    model_.bufferViews.push_back(view);
+    tinygltf::Accessor a;
+    a.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+    a.componentType = std::is_same_v<T, float>           ? TINYGLTF_COMPONENT_TYPE_FLOAT
+                      : std::is_same_v<T, std::int8_t>   ? TINYGLTF_COMPONENT_TYPE_BYTE
+                      : std::is_same_v<T, std::uint8_t>  ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+                      : std::is_same_v<T, std::int16_t>  ? TINYGLTF_COMPONENT_TYPE_SHORT
+                      : std::is_same_v<T, std::uint16_t> ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                                                         : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    a.count = count;
+    a.type = kTypes[width - 1];
+    a.normalized = normalized;
+    model_.accessors.push_back(a);
+    // Every view begins at a multiple of 4.
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    return static_cast<int>(model_.accessors.size()) - 1;
+  }
+
+  template <class T>
+  void append(T value) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
+    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(value));
+  }
+
+  /// One element for each vertex: value(vertex, k) gives its component k. Elements begin at multiples of 4
+  /// bytes.
+  template <class T, class Value>
+  int put_vertices(const std::string& name, unsigned width, bool normalized, Value&& value) {
+    const std::size_t begin = bytes_.size(), stride = (width * sizeof(T) + 3) / 4 * 4;
+    for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
+      for (unsigned k = 0; k < width; ++k) append(static_cast<T>(value(v, k)));
+      bytes_.resize(begin + (v + 1) * stride);
+    }
+    const int index =
+        accessor<T>(begin, vertex_point_.size(), width, stride, TINYGLTF_TARGET_ARRAY_BUFFER, normalized);
+    attributes_[name] = index;
+    return index;
+  }
+
+  void put_positions() {
+    const int index = put_vertices<float>("POSITION", 3, false, [&](std::size_t v, unsigned k) {
+      return mesh_.points[vertex_point_[v]][static_cast<int>(k)];
+    });
+    Vec3 low = mesh_.points[vertex_point_[0]], high = low;
+    for (const std::uint32_t point : vertex_point_)
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], mesh_.points[point][axis]);
+        high[axis] = std::max(high[axis], mesh_.points[point][axis]);
+      }
+    tinygltf::Accessor& a = model_.accessors[static_cast<std::size_t>(index)];
+    a.minValues = {low.x, low.y, low.z};
+    a.maxValues = {high.x, high.y, high.z};
+  }
+
+  void put_normals() {
+    if (!normal_) return;
+    std::size_t scaled = 0;
+    put_vertices<float>("NORMAL", 3, false, [&](std::size_t v, unsigned k) {
+      const std::size_t from = 3 * source_of(normal_, v);
+      const double squared = squared_length(*normal_.channel, from);
+      const float value = channel_float(*normal_.channel, from + k);
+      if (std::abs(squared - 1) <= kUnit) return value;
+      scaled += k == 0;
+      return static_cast<float>(value / std::sqrt(squared));
+    });
+    if (scaled > 0) notes_.push_back(std::to_string(scaled) + " normals brought to unit length");
+  }
+
+  void put_uv() {
+    if (!uv_) return;
+    // Downwards in glTF, upwards here.
+    put_vertices<float>("TEXCOORD_0", 2, false, [&](std::size_t v, unsigned k) {
+      const float value = channel_float(*uv_.channel, 2 * source_of(uv_, v) + k);
+      return k == 1 ? 1 - value : value;
+    });
+  }
+
+  void put_colors() {
+    if (!color_) return;
+    const Channel& c = *color_.channel;
+    const auto from = [&](std::size_t v, unsigned k) { return source_of(color_, v) * c.components + k; };
+    if (std::holds_alternative<std::vector<std::uint8_t>>(c.values)) {
+      put_vertices<std::uint8_t>("COLOR_0", c.components, true,
+                                 [&](std::size_t v, unsigned k) { return color_byte(c, from(v, k)); });
+      return;
+    }
+    std::size_t clamped = 0;
+    put_vertices<float>("COLOR_0", c.components, false, [&](std::size_t v, unsigned k) {
+      const float value = color_fraction(c, from(v, k)), within = std::clamp(value, 0.0f, 1.0f);
+      clamped += value != within;
+      return within;
+    });
+    if (clamped > 0)
+      notes_.push_back(std::to_string(clamped) + " components of colours brought between 0 and 1");
+  }
+
+  void put_custom(const Channel& channel) {
+    std::visit(
+        [&](const auto& values) {
+          using T = std::decay_t<decltype(values[0])>;
+          if constexpr (std::is_same_v<T, float> || sizeof(T) < 4)
+            put_vertices<T>(
+                attribute_name(channel.name), channel.components, false,
+                [&](std::size_t v, unsigned k) { return values[vertex_point_[v] * channel.components + k]; });
+        },
+        channel.values);
+  }
+
+  /// One primitive for each material that faces have, in the order of the labels; faces keep their order
+  /// within it.
+  void put_faces() {
+    model_.meshes.emplace_back();
+    if (mesh_.face_count() == 0) {
+      add_primitive(TINYGLTF_MODE_POINTS, -1, -1);
+      return;
+    }
+    if (material_ == nullptr) {
+      add_primitive(TINYGLTF_MODE_TRIANGLES, put_indices(indices_), -1);
+      return;
+    }
+    std::vector<std::vector<std::uint32_t>> of_label(material_->labels.size());
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) of_label[*label_of(*material_, f)].push_back(indices_[3 * f + k]);
+    for (std::size_t label = 0; label < of_label.size(); ++label) {
+      // The empty label stands for no material.
+      int index = -1;
+      if (!material_->labels[label].empty()) {
+        index = static_cast<int>(model_.materials.size());
+        model_.materials.emplace_back();
+        model_.materials.back().name = valid_utf8(material_->labels[label]);
+      }
+      if (!of_label[label].empty())
+        add_primitive(TINYGLTF_MODE_TRIANGLES, put_indices(of_label[label]), index);
+    }
+  }
+
+  int put_indices(const std::vector<std::uint32_t>& indices) {
+    const std::size_t begin = bytes_.size();
+    // 65,535 restarts primitives, and so is no index.
+    const bool small = vertex_point_.size() <= 0xffff;
+    for (const std::uint32_t i : indices) {
+      if (small)
+        append(static_cast<std::uint16_t>(i));
+      else
+        append(i);
+    }
+    constexpr int kTarget = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+    return small ? accessor<std::uint16_t>(begin, indices.size(), 1, sizeof(std::uint16_t), kTarget, false)
+                 : accessor<std::uint32_t>(begin, indices.size(), 1, sizeof(std::uint32_t), kTarget, false);
+  }
+
+  void add_primitive(int mode, int indices, int material) {
+    tinygltf::Primitive primitive;
+    primitive.attributes = attributes_;
+    primitive.indices = indices;
+    primitive.material = material;
+    primitive.mode = mode;
+    model_.meshes.back().primitives.push_back(primitive);
+  }
+
+  const IndexedFaceSet& mesh_;
+  const WriteOptions& options_;
+  Notes& notes_;
+  Attribute normal_, uv_, color_;
+  const Channel* zero_normals_ = nullptr;
+  std::vector<const Channel*> custom_;
+  const Channel* material_ = nullptr;
+  std::vector<std::uint32_t> indices_, vertex_point_, vertex_corner_;
+  std::vector<unsigned char> bytes_;
+  std::map<std::string, int> attributes_;
+  tinygltf::Model model_;
+};
+
+}  // namespace
+
+bool is_gltf(std::string_view bytes) {
+  if (bytes.starts_with("glTF")) return true;
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  return start != std::string_view::npos && bytes[start] == '{' &&
+         bytes.find("\"asset\"") != std::string_view::npos;
+}
+
+Result<MeshFile> parse_gltf(const Source& source) {
+  MeshFile file;
+  file.format = FileFormat::kGltf;
+  Container container{source.bytes, {}};
+  if (source.bytes.starts_with("glTF")) {
+    file.encoding = FileEncoding::kBinaryLittleEndian;
+    VKMESH_TRY(container, open_glb(source));
+  }
+  Asset asset;
+  VKMESH_CHECK(AssetReader(source, container, file.notes).read(asset));
+  VKMESH_TRY(file.geometry, SceneReader(source, asset, file.notes).read());
+  return file;
+}
+
+Result<void> encode_gltf(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
+  return GltfWriter(mesh, options, notes).write(out);
+}
+
+}  // namespace vkmesh::detail

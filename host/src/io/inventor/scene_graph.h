@@ -1,0 +1,113 @@
+// OpenInventor and VRML text as a graph of nodes. The text is split into nodes and fields once; numbers are
+// read when they are asked for, and once however often their node is used.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <vkmesh/base/result.h>
+
+#include "io/formats.h"
+
+namespace vkmesh::detail {
+
+/// How deep nodes may stand within nodes, by text and by USE.
+inline constexpr std::size_t kMaxSceneDepth = 512;
+
+/// A field of a node. `text` is what stands between the brackets, or the single value.
+struct SceneField {
+  std::string_view name;
+  std::string_view text;
+  std::vector<std::uint32_t> nodes;  ///< Where the value is one node or a list of them.
+};
+
+/// A node whose type the reader knows. Those it uses have smaller numbers, so that no walk can loop.
+struct SceneNode {
+  int kind = 0;
+  std::string_view type;  ///< As the file writes it; its place is the node's.
+  std::vector<SceneField> fields;
+  std::vector<std::uint32_t> children;  ///< Nodes that stand among the fields.
+
+  /// The field of that name, or nullptr.
+  [[nodiscard]] const SceneField* field(std::string_view name) const;
+  /// What a field that is a word says, or `otherwise`.
+  [[nodiscard]] std::string_view word(std::string_view name, std::string_view otherwise) const;
+};
+
+struct KnownNode {
+  std::string_view name;
+  int kind;  ///< Not 0, which stands for every ignored node.
+};
+
+struct SceneGraph {
+  std::vector<SceneNode> nodes;  ///< The first stands for every node that is ignored.
+  std::vector<std::uint32_t> roots;
+};
+
+/// Counts what is ignored, by name.
+class IgnoredNodes {
+ public:
+  void add(std::string_view type);
+  void add_to(Notes& notes) const;
+
+ private:
+  std::map<std::string_view, std::size_t> counts_;
+  std::size_t others_ = 0;
+};
+
+/// Splits the text into nodes. Types that `known` does not list and fields that `fields` does not list are
+/// skipped; the former are counted, as are PROTO, EXTERNPROTO and ROUTE and uses of names nobody defined.
+[[nodiscard]] Result<SceneGraph> parse_scene(const Source& source, std::span<const KnownNode> known,
+                                             std::span<const std::string_view> fields, IgnoredNodes& ignored,
+                                             Notes& notes);
+
+/// The numbers of a field, and where they stand.
+template <class T>
+struct SceneArray {
+  std::vector<T> values;
+  std::string_view text;
+};
+using SceneFloats = SceneArray<float>;
+using SceneIndices = SceneArray<std::int32_t>;
+
+/// The numbers of fields, each field read once. What it returns lives as long as it.
+class SceneNumbers {
+ public:
+  explicit SceneNumbers(const Source& source) : source_(source), farthest_(source.bytes.data()) {}
+
+  /// Rows of `width` finite numbers. nullptr where the field is missing.
+  [[nodiscard]] Result<const SceneFloats*> floats(const SceneField* field, unsigned width);
+  /// Whole numbers. nullptr where the field is missing, empty or a single -1, which Inventor writes for it.
+  [[nodiscard]] Result<const SceneIndices*> indices(const SceneField* field);
+  /// 0xRRGGBBAA as four fractions of 1.
+  [[nodiscard]] Result<const SceneFloats*> packed_colors(const SceneField* field);
+  /// Exactly `to.size()` finite numbers; left as they are where the field is missing.
+  [[nodiscard]] Result<void> values(const SceneField* field, std::span<double> to);
+  [[nodiscard]] Result<void> whole_number(const SceneField* field, std::int64_t& to);
+
+  /// kUnreadable at number `i` of an array.
+  template <class T>
+  [[nodiscard]] tl::unexpected<Error> bad_number(const SceneArray<T>& array, std::size_t i,
+                                                 std::string message) const {
+    return source_.bad_line(place_of(array.text, i), std::move(message));
+  }
+  /// Progress never goes back, though fields are read in the order of their use.
+  [[nodiscard]] Result<void> tick(const char* at);
+
+ private:
+  [[nodiscard]] static const char* place_of(std::string_view text, std::size_t i);
+  template <class Read>
+  Result<void> each(std::string_view text, const char* what, Read&& read);
+
+  const Source& source_;
+  const char* farthest_;
+  std::map<const char*, SceneFloats> floats_, colors_;
+  std::map<const char*, SceneIndices> indices_;
+};
+
+}  // namespace vkmesh::detail

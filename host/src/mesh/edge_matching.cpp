@@ -1,0 +1,210 @@
+#include "mesh/edge_matching.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <vkmesh/mesh/handles.h>
+
+#include "base/parallel.h"
+#include "mesh/edge_records.h"
+
+namespace vkmesh::detail {
+namespace {
+
+// One kind of defect: how many, and a word on the first.
+struct Defect {
+  std::size_t count = 0;
+  std::string first;
+
+  template <class Describe>
+  void add(Describe&& describe) {
+    if (count++ == 0) first = describe();
+  }
+  Defect& operator+=(const Defect& later) {
+    if (count == 0) first = later.first;
+    count += later.count;
+    return *this;
+  }
+};
+
+void append(std::string& sentence, const Defect& defect, const char* one, const char* many) {
+  if (defect.count == 0) return;
+  if (!sentence.empty()) sentence += ", ";
+  sentence += std::to_string(defect.count) + " " + (defect.count == 1 ? one : many) + " (" +
+              (defect.count == 1 ? "" : "first: ") + defect.first + ")";
+}
+
+std::string edge_name(std::size_t a, std::size_t b) {
+  return "points " + std::to_string(a) + " and " + std::to_string(b);
+}
+
+// What the edges of some points are.
+struct EdgeCounts {
+  std::size_t edges = 0, boundary = 0;
+  Defect non_manifold, misoriented;
+
+  EdgeCounts& operator+=(const EdgeCounts& later) {
+    edges += later.edges;
+    boundary += later.boundary;
+    non_manifold += later.non_manifold;
+    misoriented += later.misoriented;
+    return *this;
+  }
+};
+
+// Sorts the records of the points [first, last) and joins the twins among them.
+EdgeCounts pair_edges(EdgeRecords& edges, std::span<const std::uint32_t> corners, std::size_t first,
+                      std::size_t last, std::span<std::uint32_t> twin) {
+  EdgeCounts counts;
+  edges.for_each_group(first, last,
+                       [&](std::uint32_t a, std::uint32_t b, std::span<const std::uint64_t> uses) {
+                         ++counts.edges;
+                         const auto h = static_cast<std::uint32_t>(uses[0]);
+                         if (uses.size() == 1) {
+                           ++counts.boundary;
+                         } else if (uses.size() > 2) {
+                           counts.non_manifold.add([&] { return edge_name(a, b); });
+                         } else {
+                           const auto g = static_cast<std::uint32_t>(uses[1]);
+                           if (corners[h] == corners[g]) {
+                             counts.misoriented.add([&] { return edge_name(a, b); });
+                           } else {
+                             twin[h] = g;
+                             twin[g] = h;
+                           }
+                         }
+                       });
+  return counts;
+}
+
+// On the boundary the half-edge without a twin, elsewhere the first.
+std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                                              std::span<const std::uint32_t> twin) {
+  std::vector<std::uint32_t> leading(point_count, kInvalid);
+  for (std::size_t h = corners.size(); h-- > 0;) leading[corners[h]] = static_cast<std::uint32_t>(h);
+  for (std::size_t h = 0; h < corners.size(); ++h)
+    if (twin[h] == kInvalid) leading[corners[h]] = static_cast<std::uint32_t>(h);
+  return leading;
+}
+
+// The faces that a walk meets around a vertex, from its leading half-edge.
+std::uint32_t fan_size(std::uint32_t leading, std::span<const std::uint32_t> twin,
+                       std::span<const std::uint32_t> face_offsets) {
+  const auto previous = [&](std::uint32_t h) -> std::uint32_t {
+    if (face_offsets.empty()) return h % 3 == 0 ? h + 2 : h - 1;
+    const auto next_face = std::upper_bound(face_offsets.begin(), face_offsets.end(), h);
+    return h == *(next_face - 1) ? *next_face - 1 : h - 1;
+  };
+  std::uint32_t met = 0, h = leading;
+  do {
+    ++met;
+    h = twin[previous(h)];
+  } while (h != kInvalid && h != leading);
+  return met;
+}
+
+// How many points are isolated, and how many corners of faces the fans of the others hold.
+struct FanCounts {
+  std::size_t isolated = 0, met = 0;
+
+  FanCounts& operator+=(const FanCounts& other) {
+    isolated += other.isolated;
+    met += other.met;
+    return *this;
+  }
+};
+
+}  // namespace
+
+Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                             std::span<const std::uint32_t> face_offsets) {
+  constexpr std::size_t kGrain = 1 << 14;
+  VKMESH_CHECK(check_face_set(point_count, corners, face_offsets));
+  const std::size_t face_count = face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
+  const auto face = [&](std::size_t f) {
+    return face_offsets.empty() ? corners.subspan(3 * f, 3)
+                                : corners.subspan(face_offsets[f], face_offsets[f + 1] - face_offsets[f]);
+  };
+
+  Matching matching;
+  ConsolidateReport& report = matching.report;
+  report.points = point_count;
+  report.faces = face_count;
+
+  Defect torn;
+  const auto degenerate = parallel_sum<Defect>(face_count, kGrain, [&](std::size_t first, std::size_t last) {
+    Defect defect;
+    for (std::size_t f = first; f < last; ++f)
+      if (is_degenerate(face(f))) defect.add([&] { return "face " + std::to_string(f); });
+    return defect;
+  });
+
+  // Degenerate faces have no part in the surface: the edges are those of the others.
+  const std::span<const std::uint32_t> all_corners = corners;
+  std::vector<std::uint32_t> sound_corners, sound_offsets = {0};
+  if (degenerate.count > 0) {
+    for (std::size_t f = 0; f < face_count; ++f) {
+      if (is_degenerate(face(f))) continue;
+      sound_corners.insert(sound_corners.end(), face(f).begin(), face(f).end());
+      sound_offsets.push_back(static_cast<std::uint32_t>(sound_corners.size()));
+    }
+    corners = sound_corners;
+    face_offsets = sound_offsets;
+  }
+  const std::size_t sound_faces = face_count - degenerate.count;
+
+  matching.twin.assign(corners.size(), kInvalid);
+  EdgeCounts edges;
+  {
+    EdgeRecords records = distribute_edges(point_count, corners, face_offsets, sound_faces);
+    edges = parallel_sum<EdgeCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
+      return pair_edges(records, corners, first, last, matching.twin);
+    });
+  }
+
+  if (degenerate.count + edges.non_manifold.count + edges.misoriented.count == 0) {
+    matching.leading = leading_half_edges(point_count, corners, matching.twin);
+    const auto fans = parallel_sum<FanCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
+      FanCounts counts;
+      for (std::size_t v = first; v < last; ++v) {
+        const std::uint32_t h = matching.leading[v];
+        if (h == kInvalid)
+          ++counts.isolated;
+        else
+          counts.met += fan_size(h, matching.twin, face_offsets);
+      }
+      return counts;
+    });
+    report.isolated_points = fans.isolated;
+    if (fans.met != corners.size()) {
+      // Some vertex has faces that its fan does not meet: they form another fan.
+      std::vector<std::uint32_t> degree(point_count, 0);
+      for (const std::uint32_t c : corners) ++degree[c];
+      for (std::size_t v = 0; v < point_count; ++v)
+        if (degree[v] != 0 && fan_size(matching.leading[v], matching.twin, face_offsets) != degree[v])
+          torn.add([&] { return "point " + std::to_string(v); });
+    }
+  } else {
+    std::vector<bool> used(point_count, false);
+    for (const std::uint32_t c : all_corners) used[c] = true;
+    report.isolated_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
+  }
+
+  report.edges = edges.edges;
+  report.boundary_edges = edges.boundary;
+  report.degenerate_faces = degenerate.count;
+  report.non_manifold_edges = edges.non_manifold.count;
+  report.misoriented_edges = edges.misoriented.count;
+  report.non_manifold_vertices = torn.count;
+  append(report.defects, degenerate, "degenerate face", "degenerate faces");
+  append(report.defects, edges.non_manifold, "edge with three or more faces",
+         "edges with three or more faces");
+  append(report.defects, edges.misoriented, "edge whose two faces disagree in orientation",
+         "edges whose two faces disagree in orientation");
+  append(report.defects, torn, "point where separate fans of faces meet",
+         "points where separate fans of faces meet");
+  return matching;
+}
+
+}  // namespace vkmesh::detail

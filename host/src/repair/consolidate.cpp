@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/repair/consolidate.h>
+
+#include "base/disjoint_sets.h"
+#include "mesh/edge_matching.h"
+#include "repair/repair.h"
+
+namespace vkmesh {
+namespace {
+
+tl::unexpected<Error> not_manifold(const ConsolidateReport& report) {
+  return fail(ErrorCode::kUnsuitable, "not an oriented manifold mesh: " + report.defects);
+}
+
+/// Turns every face of `faces` over, its first corner staying the first.
+void turn_over(IndexedFaceSet& mesh, const std::vector<std::uint8_t>& faces) {
+  std::vector<std::uint32_t> source(mesh.corners.size());
+  for (std::uint32_t f = 0, c = 0; f < mesh.face_count(); ++f) {
+    const std::uint32_t begin = c, size = static_cast<std::uint32_t>(mesh.face(f).size());
+    for (std::uint32_t i = 0; i < size; ++i, ++c)
+      source[c] = faces[f] && i > 0 ? begin + size - i : begin + i;
+  }
+  std::vector<std::uint32_t> corners(mesh.corners.size());
+  for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = mesh.corners[source[c]];
+  mesh.corners = std::move(corners);
+  mesh.corner_channels = gather(mesh.corner_channels, source);
+}
+
+/// The faces of closed components that were turned in part and lie inside out.
+std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail::Matching& matching,
+                                       const std::vector<std::uint8_t>& turned) {
+  if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return {};
+  const std::size_t faces = mesh.face_count();
+  std::vector<std::uint32_t> face_of(mesh.corners.size());
+  for (std::uint32_t f = 0, c = 0; f < faces; ++f)
+    for (std::size_t i = 0; i < mesh.face(f).size(); ++i, ++c) face_of[c] = f;
+  detail::DisjointSets components(faces);
+  for (std::size_t h = 0; h < face_of.size(); ++h)
+    if (matching.twin[h] != kInvalid) components.unite(face_of[h], face_of[matching.twin[h]]);
+
+  std::vector<std::uint8_t> open(faces, 0), touched(faces, 0);
+  std::vector<double> volume(faces, 0);
+  for (std::size_t h = 0; h < face_of.size(); ++h)
+    if (matching.twin[h] == kInvalid) open[components.find(face_of[h])] = 1;
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    const std::uint32_t root = components.find(f);
+    if (turned[f]) touched[root] = 1;
+    const auto corners = mesh.face(f);
+    // Relative to a point of the component, so that surfaces far from zero keep their digits.
+    const DVec3 origin(mesh.points[mesh.face(root)[0]]);
+    const DVec3 a = DVec3(mesh.points[corners[0]]) - origin;
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+      volume[root] += glm::dot(a, glm::cross(DVec3(mesh.points[corners[i]]) - origin,
+                                             DVec3(mesh.points[corners[i + 1]]) - origin));
+  }
+  std::vector<std::uint8_t> inward(faces, 0);
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    const std::uint32_t root = components.find(f);
+    inward[f] = touched[root] && !open[root] && volume[root] < 0;
+  }
+  return inward;
+}
+
+void drop_isolated_points(Consolidated& result) {
+  IndexedFaceSet& mesh = result.face_set;
+  std::vector<std::uint32_t> number(mesh.points.size(), kInvalid), kept;
+  for (const std::uint32_t c : mesh.corners) number[c] = 0;
+  for (std::uint32_t p = 0; p < number.size(); ++p) {
+    if (number[p] == kInvalid) continue;
+    number[p] = static_cast<std::uint32_t>(kept.size());
+    kept.push_back(p);
+  }
+  result.report.removed_points = mesh.points.size() - kept.size();
+  if (result.report.removed_points == 0) return;
+  for (std::uint32_t& c : mesh.corners) c = number[c];
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> source;
+  for (const std::uint32_t p : kept) {
+    points.push_back(mesh.points[p]);
+    source.push_back(result.source_point.empty() ? p : result.source_point[p]);
+  }
+  mesh.points = std::move(points);
+  mesh.point_channels = gather(mesh.point_channels, kept);
+  result.source_point = std::move(source);
+}
+
+/// Names of the input of welding, for names of its output.
+void name_before_welding(std::vector<std::uint32_t>& source_point, const std::vector<std::uint32_t>& point_of,
+                         std::size_t points) {
+  std::vector<std::uint32_t> first(points, kInvalid);
+  for (std::uint32_t p = 0; p < point_of.size(); ++p) first[point_of[p]] = std::min(first[point_of[p]], p);
+  if (source_point.empty())
+    source_point = std::move(first);
+  else
+    for (std::uint32_t& p : source_point) p = first[p];
+}
+
+Result<detail::Matching> match(const IndexedFaceSet& mesh) {
+  return detail::match_edges(mesh.points.size(), mesh.corners, mesh.face_offsets);
+}
+
+Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options, const Progress& progress) {
+  Consolidated result;
+  Welded welded;
+  if (options.weld) {
+    VKMESH_TRY(welded, weld(mesh, *options.weld));
+    mesh = std::move(welded.mesh);
+  }
+  VKMESH_TRY(detail::Matching matching, match(mesh));
+  ConsolidateReport& report = result.report = std::move(matching.report);
+  if (options.weld) {
+    report.welded_points = welded.merged_points;
+    report.largest_weld_move = welded.largest_move;
+    report.weld_seams = std::move(welded.seams);
+  }
+  if (report.manifold()) {
+    result.face_set = std::move(mesh);
+  } else if (options.strict) {
+    return not_manifold(report);
+  } else {
+    VKMESH_TRY(detail::Repaired repaired, detail::repair(mesh, options.cut_non_orientable, report, progress));
+    mesh = {};
+    result.face_set = std::move(repaired.mesh);
+    result.source_point = std::move(repaired.source_point);
+    result.source_face = std::move(repaired.source_face);
+    report.non_manifold_vertices = std::max(report.non_manifold_vertices, report.split_points);
+    matching = std::move(repaired.matching);
+    const std::vector<std::uint8_t> inward = inward_faces(result.face_set, matching, repaired.turned);
+    if (std::find(inward.begin(), inward.end(), 1) != inward.end()) {
+      turn_over(result.face_set, inward);
+      for (std::size_t f = 0; f < inward.size(); ++f) {
+        if (!inward[f]) continue;
+        report.flipped_faces += repaired.turned[f] ? std::size_t(-1) : std::size_t{1};
+      }
+      VKMESH_TRY(matching, match(result.face_set));
+    }
+  }
+  if (!options.keep_isolated_points) {
+    drop_isolated_points(result);
+    if (report.removed_points > 0) {
+      VKMESH_TRY(matching, match(result.face_set));
+    }
+  }
+  if (options.weld && report.welded_points > 0)
+    name_before_welding(result.source_point, welded.point_of, report.points);
+  result.mesh = HalfEdgeMesh::from_arrays(result.face_set.corners, std::move(matching.twin),
+                                          std::move(matching.leading), result.face_set.face_offsets);
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> ConsolidateReport::repairs() const {
+  std::vector<std::string> sentences;
+  const auto say = [&](std::size_t count, const char* one, const char* many, const std::string& rest) {
+    if (count > 0) sentences.push_back(std::to_string(count) + " " + (count == 1 ? one : many) + " " + rest);
+  };
+  say(welded_points, "point", "points", "welded to others");
+  for (const std::string& name : weld_seams)
+    sentences.push_back("the values of '" + name +
+                        "' moved from points to corners, for points that were welded differ");
+  say(removed_degenerate_faces, "face", "faces", "without three distinct points removed");
+  say(removed_duplicate_faces, "face", "faces", "with the points of another removed");
+  say(mended_polygons, "polygon", "polygons", "that repeated a point mended");
+  say(flipped_faces, "face", "faces", "turned over to agree in orientation");
+  say(cut_components, "component", "components",
+      std::string("not orientable, cut along ") + std::to_string(cut_edges) +
+          (cut_edges == 1 ? " edge" : " edges"));
+  say(split_edges, "edge", "edges", "of three or more faces split");
+  say(split_points, "point", "points",
+      std::string("where separate fans of faces met split, ") + std::to_string(added_points) +
+          (added_points == 1 ? " copy" : " copies") + " added");
+  say(removed_points, "isolated point", "isolated points", "removed");
+  return sentences;
+}
+
+Result<Consolidated> consolidate(IndexedFaceSet mesh, const ConsolidateOptions& options,
+                                 const Progress& progress) {
+  return detail::catching([&] { return run(std::move(mesh), options, progress); });
+}
+
+Result<ConsolidateReport> survey(const IndexedFaceSet& mesh) {
+  return detail::catching([&]() -> Result<ConsolidateReport> {
+    VKMESH_TRY(detail::Matching matching, match(mesh));
+    return std::move(matching.report);
+  });
+}
+
+Result<HalfEdgeMesh> to_half_edge_mesh(const IndexedFaceSet& mesh) {
+  return detail::catching([&]() -> Result<HalfEdgeMesh> {
+    VKMESH_TRY(detail::Matching matching, match(mesh));
+    if (!matching.report.manifold()) return not_manifold(matching.report);
+    return HalfEdgeMesh::from_arrays(mesh.corners, std::move(matching.twin), std::move(matching.leading),
+                                     mesh.face_offsets);
+  });
+}
+
+Result<IndexedFaceSet> to_indexed_face_set(const HalfEdgeMesh& mesh, std::vector<Vec3> positions) {
+  return detail::catching([&]() -> Result<IndexedFaceSet> {
+    if (positions.size() != mesh.vertex_count())
+      return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " positions for " +
+                                         std::to_string(mesh.vertex_count()) + " vertices");
+    IndexedFaceSet set;
+    set.points = std::move(positions);
+    set.corners.assign(mesh.origins().begin(), mesh.origins().end());
+    set.face_offsets.assign(mesh.face_offsets().begin(), mesh.face_offsets().end());
+    return set;
+  });
+}
+
+}  // namespace vkmesh

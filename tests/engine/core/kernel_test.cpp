@@ -1,0 +1,100 @@
+#include <array>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/engine/core/kernel.h>
+
+#include "core/shaders.h"
+#include "core/spirv.h"
+#include "support/device.h"
+
+namespace vkmesh::test {
+namespace {
+
+Error error_of(const KernelSource& source) {
+  const auto kernel = Kernel::get(test_context(), source);
+  if (kernel) FAIL("kernel '" << source.name << "' was made");
+  return kernel.error();
+}
+
+}  // namespace
+
+TEST_CASE("every embedded kernel is made, once for a context") {
+  for (const KernelSource& source : detail::embedded_kernels()) {
+    INFO(source.name);
+    const auto first = Kernel::get(test_context(), source);
+    REQUIRE(first);
+    CHECK((*first)->name() == source.name);
+    CHECK((*first)->workgroup_size() == 128);
+    CHECK((*first)->push_constant_bytes() == source.push_constant_bytes);
+    const auto second = Kernel::get(test_context(), source);
+    REQUIRE(second);
+    CHECK(*first == *second);
+  }
+}
+
+TEST_CASE("threads that ask for the same kernel get the same one") {
+  const auto context = Context::create(device_options());
+  REQUIRE(context);
+  std::array<const Kernel*, 4> kernels{};
+  std::vector<std::thread> threads;
+  for (const Kernel*& kernel : kernels)
+    threads.emplace_back([&] {
+      const auto made = Kernel::get(**context, detail::vertex_normals_kernel());
+      if (made) kernel = *made;
+    });
+  for (std::thread& thread : threads) thread.join();
+  REQUIRE(kernels[0] != nullptr);
+  for (const Kernel* kernel : kernels) CHECK(kernel == kernels[0]);
+}
+
+TEST_CASE("what is no kernel is refused") {
+  KernelSource source = detail::vertex_normals_kernel();
+  source.name = "push constants of another size";
+  source.push_constant_bytes += 8;
+  CHECK(error_of(source).code == ErrorCode::kUsage);
+  CHECK_THAT(error_of(source).message,
+             Catch::Contains("the shader takes 40 bytes of push constants, not 48"));
+
+  source = detail::vertex_normals_kernel();
+  REQUIRE(Kernel::get(test_context(), source));
+  source.spirv = detail::vertex_maxima_kernel().spirv;
+  CHECK_THAT(error_of(source).message, Catch::Contains("two different kernels are named 'vertex_normals'"));
+
+  source.name = "empty";
+  source.spirv = {};
+  CHECK(error_of(source).code == ErrorCode::kUsage);
+  const std::vector<std::uint32_t> noise(100, 0x12345678u);
+  source.name = "noise";
+  source.spirv = noise;
+  CHECK(error_of(source).code == ErrorCode::kUsage);
+}
+
+TEST_CASE("SPIR-V that is cut off or changed anywhere is inspected without harm", "[no-device]") {
+  const auto spirv = detail::vertex_normals_kernel().spirv;
+  REQUIRE(detail::inspect_spirv(spirv));
+  // Where a module may end: after its header, and after each instruction.
+  std::set<std::size_t> ends = {5};
+  const auto instructions = detail::spirv_instructions(spirv);
+  REQUIRE(instructions);
+  for (const auto& i : *instructions) ends.insert(i.offset + i.words.size());
+  for (std::size_t words = 0; words < spirv.size(); ++words) {
+    // Memory of its own, so that a read past the end is seen.
+    const std::vector<std::uint32_t> part(spirv.begin(), spirv.begin() + static_cast<std::ptrdiff_t>(words));
+    CHECK(detail::spirv_instructions(part).has_value() == ends.contains(words));
+    (void)detail::inspect_spirv(part);
+  }
+  for (std::size_t i = 0; i < spirv.size(); ++i)
+    for (const std::uint32_t value : {0u, 0xffffffffu, spirv[i] ^ 1u, spirv[i] + 0x10000u}) {
+      std::vector<std::uint32_t> changed(spirv.begin(), spirv.end());
+      changed[i] = value;
+      if (detail::inspect_spirv(changed))
+        (void)detail::with_float_controls(changed,
+                                          {.round_to_nearest_even = true, .keep_signed_zeros = true});
+    }
+}
+
+}  // namespace vkmesh::test

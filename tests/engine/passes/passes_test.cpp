@@ -1,0 +1,376 @@
+// Every pass on the device against its CPU reference, bit for bit. (tests/host/passes_test.cpp checks the
+// reference.)
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/mesh/device_mesh.h>
+#include <vkmesh/engine/passes/bilateral_smoothing.h>
+#include <vkmesh/engine/passes/collapse_costs.h>
+#include <vkmesh/engine/passes/curvatures.h>
+#include <vkmesh/engine/passes/dihedral_angles.h>
+#include <vkmesh/engine/passes/laplacian_smoothing.h>
+#include <vkmesh/engine/passes/restore_volume.h>
+#include <vkmesh/engine/passes/surface_measures.h>
+#include <vkmesh/engine/passes/swap_scores.h>
+#include <vkmesh/engine/passes/triangle_normals.h>
+#include <vkmesh/engine/passes/vertex_normals.h>
+#include <vkmesh/io/mesh_io.h>
+#include <vkmesh/passes/dihedral_angles.h>
+#include <vkmesh/passes/laplacian_smoothing.h>
+#include <vkmesh/passes/triangle_normals.h>
+#include <vkmesh/passes/vertex_normals.h>
+#include <vkmesh/repair/consolidate.h>
+
+#include "support/data.h"
+#include "support/device.h"
+#include "support/shapes.h"
+
+using namespace vkmesh;
+
+namespace {
+
+constexpr MeshPasses kAllPasses = {.vertex_normals = true,
+                                   .laplacian_smoothing = true,
+                                   .dihedral_angles = true,
+                                   .triangle_normals = true,
+                                   .curvatures = true,
+                                   .surface_measures = true,
+                                   .bilateral_smoothing = true,
+                                   .restore_volume = true,
+                                   .collapse_costs = true,
+                                   .swap_scores = true};
+
+// The number of places where two arrays differ in any bit, plus the difference in their lengths.
+std::size_t differences(std::span<const float> a, std::span<const float> b) {
+  std::size_t count = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    count += std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i]);
+  return count;
+}
+
+std::size_t differences(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return differences(std::span(a.empty() ? nullptr : &a[0].x, 3 * a.size()),
+                     std::span(b.empty() ? nullptr : &b[0].x, 3 * b.size()));
+}
+
+void require_done(const Result<void>& result) {
+  if (!result) FAIL(result.error().describe());
+}
+
+template <class T>
+T require(Result<T> result) {
+  if (!result) FAIL(result.error().describe());
+  return *std::move(result);
+}
+
+// Runs `record` on a fresh device mesh.
+template <class Record>
+DeviceMesh run(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, Record&& record,
+               const MeshPasses& passes = kAllPasses) {
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, positions, passes));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  require_done(record(recorder, device));
+  require_done(recorder.submit_and_wait());
+  return device;
+}
+
+// The first fills of the queues.
+void check_exact_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> points) {
+  for (const CollapsePlacement placement :
+       {CollapsePlacement::kOptimal, CollapsePlacement::kMidpoint, CollapsePlacement::kEndpoint}) {
+    CollapseCostOptions options = unit_frame(points);
+    options.placement = placement;
+    options.boundary_weight = 30.0f;
+    const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
+      return record_collapse_costs(recorder, on_device, options);
+    });
+    const auto found = require(device.download_quadrics()), wanted = require(quadrics(mesh, points, options));
+    CHECK(differences(std::span(found.empty() ? nullptr : found[0].data(), 6 * found.size()),
+                      std::span(wanted.empty() ? nullptr : wanted[0].data(), 6 * wanted.size())) == 0);
+    CHECK(differences(require(device.download_collapse_costs()),
+                      require(collapse_costs(mesh, points, wanted, options))) == 0);
+  }
+  for (const SwapCriterion criterion : {SwapCriterion::kMinAngle, SwapCriterion::kAspectRatio}) {
+    const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
+      return record_swap_scores(recorder, on_device, criterion);
+    });
+    CHECK(differences(require(device.download_swap_scores()),
+                      require(swap_scores(mesh, points, criterion))) == 0);
+  }
+}
+
+// Smoothing that takes the volume away, and getting it back, in one submission.
+void check_exact_volume(const HalfEdgeMesh& mesh, std::span<const Vec3> points) {
+  const LaplacianSmoothingOptions options{.lambda = 0.8f, .iterations = 3};
+  const auto smoothed = require(laplacian_smoothing(require(node_neighbours(mesh)), points, options));
+  const auto wanted = restore_volume(mesh, points, smoothed);
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, points, kAllPasses));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  const auto measured = record_volume(recorder, device);
+  REQUIRE(measured.has_value() == wanted.has_value());
+  if (!wanted) {
+    CHECK(measured.error().code == wanted.error().code);
+    CHECK(record_restore_volume(recorder, device).error().code == wanted.error().code);
+    return;
+  }
+  require_done(record_laplacian_smoothing(recorder, device, options));
+  require_done(record_restore_volume(recorder, device));
+  require_done(recorder.submit_and_wait());
+  CHECK(differences(require(device.download_positions()), *wanted) == 0);
+}
+
+// With σ_f of so many mean edge lengths. Without buffers for other passes: docs/design.md says why.
+void check_exact_bilateral(const HalfEdgeMesh& mesh, std::span<const Vec3> points, double widths) {
+  const double edge = mean_edge_length(mesh, points);
+  const BilateralSmoothingOptions options{.spatial = static_cast<float>(widths * edge),
+                                          .influence = static_cast<float>(0.3 * edge)};
+  const auto wanted = bilateral_smoothing(mesh, points, options);
+  const auto nearby = NearbyFaces::create(test::test_context(), mesh, points, options);
+  REQUIRE(nearby.has_value() == wanted.has_value());
+  if (!wanted) {
+    CHECK(nearby.error().code == wanted.error().code);
+    return;
+  }
+  const DeviceMesh device = run(mesh, points,
+                                [&](Recorder& recorder, DeviceMesh& on_device) {
+                                  return record_bilateral_smoothing(recorder, on_device, *nearby);
+                                },
+                                {.bilateral_smoothing = true});
+  CHECK(differences(require(device.download_positions()), *wanted) == 0);
+}
+
+// Under GPU-assisted validation a coarser one, mended: with its checks the fine one takes minutes.
+IndexedFaceSet dragon() {
+  const char* name = test::gpu_assisted() ? "dragon_vrip_res3.ply.gz" : "dragon_vrip.ply.gz";
+  return require(consolidate(require(to_indexed_face_set(require(read_mesh(test::dragon(name))))))).face_set;
+}
+
+// Runs all passes on both sides and compares every output.
+void check_exact(const IndexedFaceSet& set) {
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  Context& context = test::test_context();
+  for (const NormalWeights weights : {NormalWeights::kAngle, NormalWeights::kUniform}) {
+    const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
+      return record_vertex_normals(recorder, on_device, {.weights = weights});
+    });
+    CHECK(differences(require(device.download_vertex_normals()),
+                      require(vertex_normals(mesh, set.points, {.weights = weights}))) == 0);
+  }
+  check_exact_costs(mesh, set.points);
+  check_exact_volume(mesh, set.points);
+  const NodeNeighbours neighbours = require(node_neighbours(mesh));
+  const auto bent = require(run(mesh, set.points, record_curvatures).download_curvatures());
+  const auto expected = require(curvatures(neighbours, set.points));
+  CHECK(differences(std::span(bent.empty() ? nullptr : &bent[0].mean, 4 * bent.size()),
+                    std::span(expected.empty() ? nullptr : &expected[0].mean, 4 * expected.size())) == 0);
+  const SurfaceMeasures measured =
+      require(run(mesh, set.points, record_surface_measures).download_surface_measures());
+  const SurfaceMeasures wanted = require(surface_measures(mesh, set.points));
+  CHECK(measured.area == wanted.area);
+  CHECK(measured.volume == wanted.volume);
+  CHECK(measured.centroid == wanted.centroid);
+  CHECK(differences(std::vector{measured.low, measured.high}, std::vector{wanted.low, wanted.high}) == 0);
+  std::vector<std::uint32_t> locks(neighbours.boundary_bits.size());
+  std::mt19937 random(23);
+  for (std::uint32_t& word : locks) word = static_cast<std::uint32_t>(random() & random());
+  for (const LaplacianSmoothingOptions& options :
+       {LaplacianSmoothingOptions{
+            .lambda = 0.63f, .iterations = 3, .boundary = SmoothingBoundary::kFree, .mu = -0.67f},
+        LaplacianSmoothingOptions{.iterations = 3, .boundary = SmoothingBoundary::kAlongItself},
+        LaplacianSmoothingOptions{
+            .lambda = 0.9f, .iterations = 4, .weights = SmoothingWeights::kCotangent, .mu = -0.95f},
+        LaplacianSmoothingOptions{
+            .iterations = 3, .boundary = SmoothingBoundary::kFree, .weights = SmoothingWeights::kCotangent},
+        LaplacianSmoothingOptions{.iterations = 3,
+        .boundary = SmoothingBoundary::kAlongItself,
+        .weights = SmoothingWeights::kCotangent}})
+    for (const bool locked : {false, true}) {
+      const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
+        if (locked) require_done(on_device.upload_locks(locks));
+        return record_laplacian_smoothing(recorder, on_device, options);
+      });
+      LaplacianSmoothingOptions on_host = options;
+      if (locked) on_host.locked = locks;
+      CHECK(differences(require(device.download_positions()),
+                        require(laplacian_smoothing(neighbours, set.points, on_host))) == 0);
+    }
+  for (const LaplacianSmoothingOptions& options :
+       {LaplacianSmoothingOptions{.lambda = 0.5f, .iterations = 1, .boundary = SmoothingBoundary::kFixed},
+        LaplacianSmoothingOptions{.lambda = 0.37f, .iterations = 10, .boundary = SmoothingBoundary::kFree}}) {
+    DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points, kAllPasses));
+    Recorder recorder = require(Recorder::create(context));
+    require_done(record_triangle_normals(recorder, device));
+    require_done(record_vertex_normals(recorder, device));
+    require_done(record_dihedral_angles(recorder, device));
+    require_done(record_laplacian_smoothing(recorder, device, options));
+    require_done(recorder.submit_and_wait());
+
+    const DihedralAngles angles = require(dihedral_angles(mesh, set.points));
+    CHECK(differences(require(device.download_triangle_normals()),
+                      require(triangle_normals(mesh, set.points))) == 0);
+    CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, set.points))) ==
+          0);
+    CHECK(differences(require(device.download_half_edge_angles()), angles.half_edge) == 0);
+    CHECK(differences(require(device.download_vertex_maxima()), angles.vertex_maximum) == 0);
+    CHECK(differences(require(device.download_positions()),
+                      require(laplacian_smoothing(require(node_neighbours(mesh)), set.points, options))) ==
+          0);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("passes equal their references bit for bit on shapes, noisy and scaled") {
+  std::vector<IndexedFaceSet> shapes = {test::tetrahedron(), test::cube(),       test::icosphere(4),
+                                        test::torus(50, 31), test::grid(33, 17), test::cylinder(9, 11)};
+  for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+    check_exact(shapes[i]);
+    test::jitter(shapes[i], 0.05f, i);
+    check_exact(shapes[i]);
+    for (Vec3& p : shapes[i].points) p *= 0x1p-45f;
+    check_exact(shapes[i]);
+    for (Vec3& p : shapes[i].points) p *= 0x1p95f;
+    check_exact(shapes[i]);
+  }
+}
+
+TEST_CASE("passes equal their references where lengths vanish: subnormal, coincident and collinear points") {
+  IndexedFaceSet set = test::icosphere(3);
+  std::mt19937 random(17);
+  for (Vec3& p : set.points)
+    for (int k = 0; k < 3; ++k) {
+      const int exponent = static_cast<int>(random() % 150u) - 149;
+      p[k] = std::ldexp(p[k], exponent);
+    }
+  check_exact(set);
+  for (Vec3& p : set.points) p.y = p.x;
+  check_exact(set);
+  for (Vec3& p : set.points) p = Vec3(0.25f);
+  check_exact(set);
+}
+
+TEST_CASE("passes leave isolated vertices alone, and take a mesh without faces and an empty one") {
+  IndexedFaceSet set = test::grid(3, 3);
+  set.points.insert(set.points.begin(), Vec3(5.0f, 6.0f, 7.0f));
+  for (auto& c : set.corners) ++c;
+  check_exact(set);
+  set.corners.clear();
+  check_exact(set);
+  set.points.clear();
+  check_exact(set);
+}
+
+TEST_CASE("passes equal their references bit for bit on the dragon") {
+  const IndexedFaceSet set = dragon();
+  CHECK(set.face_count() == (test::gpu_assisted() ? 47400 : 871414));
+  check_exact(set);
+}
+
+// Under GPU-assisted validation with at most 520 faces around a vertex: docs/design.md says why.
+TEST_CASE("bilateral smoothing equals its reference with widths from a part of an edge to the whole mesh") {
+  const bool few = test::gpu_assisted();
+  for (IndexedFaceSet set :
+       {test::icosphere(few ? 2 : 3), test::grid(20, 13), few ? test::torus(20, 12) : test::torus(30, 20)}) {
+    test::jitter(set, 0.05f, 3);
+    set.points.push_back(Vec3(100.0f, 0.0f, 0.0f));  // Isolated, and far away.
+    for (const double widths : {0.02, 0.5, 3.0, 40.0})
+      check_exact_bilateral(test::half_edges(set), set.points, widths);
+  }
+}
+
+TEST_CASE("bilateral smoothing equals its reference on shapes, where lengths vanish, and on the dragon") {
+  std::vector<IndexedFaceSet> shapes = {test::tetrahedron(), test::cube(),       test::icosphere(4),
+                                        test::torus(50, 31), test::grid(33, 17), test::cylinder(9, 11)};
+  for (std::uint32_t i = 0; i < shapes.size(); ++i)
+    for (const bool noisy : {false, true}) {
+      if (noisy) test::jitter(shapes[i], 0.05f, i);
+      check_exact_bilateral(test::half_edges(shapes[i]), shapes[i].points, 1.0);
+    }
+  IndexedFaceSet vanishing = test::icosphere(test::gpu_assisted() ? 2 : 3);
+  std::mt19937 random(17);
+  for (Vec3& p : vanishing.points)
+    for (int k = 0; k < 3; ++k) p[k] = std::ldexp(p[k], static_cast<int>(random() % 150u) - 149);
+  check_exact_bilateral(test::half_edges(vanishing), vanishing.points, 1.0);
+  const IndexedFaceSet scanned = dragon();
+  check_exact_bilateral(test::half_edges(scanned), scanned.points, 1.0);
+}
+
+TEST_CASE("a vertex of more neighbours than the device's loops have rounds is refused, and not cut short") {
+  constexpr std::uint32_t kSides = 70000;
+  IndexedFaceSet fan;
+  fan.points.push_back(Vec3(0.0f, 0.0f, 1.0f));
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 6.283185307179586 * i / kSides;
+    fan.points.push_back(
+        Vec3(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0.0f));
+    for (const std::uint32_t v : {0u, 1 + i, 1 + (i + 1) % kSides}) fan.corners.push_back(v);
+  }
+  const HalfEdgeMesh mesh = test::half_edges(fan);
+  for (const MeshPasses& passes :
+       {MeshPasses{.vertex_normals = true}, MeshPasses{.laplacian_smoothing = true}}) {
+    const auto device = DeviceMesh::create(test::test_context(), mesh, fan.points, passes);
+    if (test::test_context().info().loop_rounds > kSides) {
+      CHECK(device);
+    } else {
+      REQUIRE_FALSE(device);
+      CHECK(device.error().code == ErrorCode::kUnsuitable);
+      CHECK_THAT(device.error().message, Catch::Contains("vertex 0 has 70000 neighbours"));
+    }
+  }
+  const BilateralSmoothingOptions wide{.spatial = 4.0f, .influence = 1.0f};
+  const auto nearby = NearbyFaces::create(test::test_context(), mesh, fan.points, wide);
+  CHECK(nearby.has_value() == (test::test_context().info().loop_rounds > kSides));
+}
+
+TEST_CASE("normals after smoothing in one submission are those of the smoothed positions") {
+  IndexedFaceSet set = test::icosphere(3);
+  test::jitter(set, 0.05f, 1);
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  const LaplacianSmoothingOptions options{.lambda = 0.6f, .iterations = 7};
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, set.points, kAllPasses));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  require_done(record_laplacian_smoothing(recorder, device, options));
+  require_done(record_vertex_normals(recorder, device));
+  require_done(recorder.submit_and_wait());
+  const auto smoothed = require(laplacian_smoothing(require(node_neighbours(mesh)), set.points, options));
+  CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, smoothed))) == 0);
+}
+
+TEST_CASE("smoothing on the device: λ out of range and passes that the mesh was not made for are errors") {
+  const IndexedFaceSet set = test::cube();
+  DeviceMesh device = require(
+      DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, {.vertex_normals = true}));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  CHECK(record_laplacian_smoothing(recorder, device, {}).error().code == ErrorCode::kUsage);
+  CHECK(record_dihedral_angles(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_curvatures(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_surface_measures(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_triangle_normals(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_collapse_costs(recorder, device, {}).error().code == ErrorCode::kUsage);
+  CHECK(record_swap_scores(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_volume(recorder, device).error().code == ErrorCode::kUsage);
+  CHECK(record_restore_volume(recorder, device).error().code == ErrorCode::kUsage);
+  const NearbyFaces nearby = require(NearbyFaces::create(test::test_context(), test::half_edges(set),
+                                                         set.points, {.spatial = 0.5f, .influence = 0.1f}));
+  CHECK(record_bilateral_smoothing(recorder, device, nearby).error().code == ErrorCode::kUsage);
+  CHECK(device.download_triangle_normals().error().code == ErrorCode::kUsage);
+  DeviceMesh all =
+      require(DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, kAllPasses));
+  CHECK(record_laplacian_smoothing(recorder, all, {.lambda = 1.5f}).error().code == ErrorCode::kUsage);
+  CHECK(record_laplacian_smoothing(recorder, all, {.mu = 0.5f}).error().code == ErrorCode::kUsage);
+  CHECK(record_collapse_costs(recorder, all, {.scale = 0.0f}).error().code == ErrorCode::kUsage);
+  const NearbyFaces of_another =
+      require(NearbyFaces::create(test::test_context(), test::half_edges(test::tetrahedron()),
+                                  test::tetrahedron().points, {.spatial = 0.5f, .influence = 0.1f}));
+  CHECK(record_bilateral_smoothing(recorder, all, of_another).error().code == ErrorCode::kUsage);
+  const std::vector<std::uint32_t> locks(1, 0u), too_many(2, 0u);
+  CHECK(record_laplacian_smoothing(recorder, all, {.locked = locks}).error().code == ErrorCode::kUsage);
+  CHECK(all.upload_locks(too_many).error().code == ErrorCode::kUsage);
+  CHECK(device.upload_locks(locks).error().code == ErrorCode::kUsage);
+  CHECK(all.upload_locks(locks));
+}

@@ -1,0 +1,359 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <set>
+#include <span>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "decimation/decimate_support.h"
+#include "decimation/decimation_state.h"
+#include "decimation/order/collapse_order.h"
+#include "decimation/parallel/coarsen.h"
+#include "decimation/parallel/coarsen_batch.h"
+#include "decimation/setup/initial_quadrics.h"
+#include "support/shapes.h"
+
+namespace vkmesh {
+namespace {
+
+using detail::CollapseMesh;
+using detail::CollapseVertex;
+using detail::Stretch;
+using detail::SweepBatch;
+using test::ring_of;
+
+CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
+  test::jitter(set, 0.05f, seed);
+  CollapseMesh mesh = test::collapse_mesh_of(test::fitted(set));
+  detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+  return mesh;
+}
+
+/// Of both quadrics, at q.
+double cost_of(const CollapseVertex& p, const CollapseVertex& q) {
+  std::array<double, 3> x;
+  for (std::size_t k = 0; k < 3; ++k)
+    x[k] = static_cast<double>(q.position[k]) - static_cast<double>(p.position[k]);
+  const std::array<std::array<std::size_t, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+  double sum = p.c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += 2 * static_cast<double>(p.b[i]) * x[i];
+    for (std::size_t j = 0; j < 3; ++j) sum += static_cast<double>(p.a[at[i][j]]) * x[i] * x[j];
+  }
+  return std::max(sum, 0.0) + static_cast<double>(q.c);
+}
+
+/// The same with vertices that are next to each other 16 numbers apart: in one batch.
+IndexedFaceSet spread(const IndexedFaceSet& set) {
+  IndexedFaceSet result = set;
+  const std::size_t n = set.points.size(), rows = n / 16;
+  const auto to = [&](std::size_t v) { return v < 16 * rows ? v % rows * 16 + v / rows : v; };
+  for (std::size_t v = 0; v < n; ++v) result.points[to(v)] = set.points[v];
+  for (std::uint32_t& c : result.corners) c = static_cast<std::uint32_t>(to(c));
+  return result;
+}
+
+/// With vertices of few neighbours and of many.
+std::vector<IndexedFaceSet> shapes() {
+  return {test::icosphere(3), test::torus(30, 16), test::grid(20, 22), test::fine_cube(8)};
+}
+
+Vec3 normal_of(const CollapseMesh& mesh, std::uint32_t f) {
+  const auto at = [&](std::size_t i) {
+    const auto& p = mesh.vertices[mesh.face(4 * f).origin[i]].position;
+    return Vec3(p[0], p[1], p[2]);
+  };
+  return glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0)));
+}
+
+}  // namespace
+
+TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the least cost", "[decimate]") {
+  for (std::uint32_t seed = 0; seed < 24; ++seed) {
+    CollapseMesh mesh = mesh_of(shapes()[seed % 4], seed);
+    std::mt19937 random(seed);
+    // What vertices have taken in is in their quadrics.
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v)
+      mesh.vertices[v].c = 1e-7f * static_cast<float>(random() % 1000);
+    const std::uint32_t n = mesh.apex();
+    const Stretch stretch = seed < 12 ? Stretch{0, n} : Stretch{n / 5, n / 5 + n / 2};
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t v = stretch.begin + seed % 12;
+         v < stretch.end && some.size() < SweepBatch::kSize - seed % 3; v += 7)
+      some.push_back(v);
+    SweepBatch batch;
+    batch.set(mesh, some, stretch);
+    REQUIRE(batch.count == some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto ring = ring_of(mesh, some[i]);
+      if (ring.size() > SweepBatch::kMost) {
+        CHECK(!batch.has_best(i));
+        continue;
+      }
+      // The apex is of no stretch.
+      const bool inside = std::ranges::all_of(ring, [&](std::uint32_t v) { return stretch.holds(v); });
+      REQUIRE(batch.is_inside[i] == (inside ? 1u : 0u));
+      REQUIRE(batch.has_best(i) == inside);
+      REQUIRE(batch.size[i] == ring.size());
+      // It comes again, and can be read on from any neighbour.
+      for (std::size_t k = 0; k < ring.size() + SweepBatch::kMost; ++k) {
+        const std::uint32_t h = batch.ring[i].edge[k];
+        REQUIRE(batch.ring[i].vertex[k] == ring[k % ring.size()]);
+        REQUIRE(mesh.origin(h) == some[i]);
+        REQUIRE(mesh.target(h) == ring[k % ring.size()]);
+      }
+      if (!inside) continue;
+      std::vector<double> costs;
+      for (const std::uint32_t r : ring) costs.push_back(cost_of(mesh.vertices[some[i]], mesh.vertices[r]));
+      const double least = std::ranges::min(costs),
+                   rounding = 1e-6 * static_cast<double>(mesh.vertices[some[i]].weight);
+      CHECK(std::abs(costs[batch.best_of(i)] - least) <= 2e-6 * least + rounding);
+      CHECK(std::abs(static_cast<double>(batch.cost_of(i)) - least) <= 2e-6 * least + rounding);
+    }
+  }
+}
+
+/// Connectivity, and that no two edges join the same vertices.
+void check(const CollapseMesh& mesh) {
+  for (std::uint32_t h = 0; h < mesh.half_edge_bound(); ++h) {
+    if (h % 4 == 3 || !mesh.alive(h)) continue;
+    const std::uint32_t t = mesh.twin(h);
+    REQUIRE(mesh.alive(t));
+    REQUIRE(mesh.twin(t) == h);
+    REQUIRE(mesh.origin(t) == mesh.target(h));
+    REQUIRE((mesh.origin(h) == mesh.apex() || mesh.vertices[mesh.origin(h)].alive()));
+  }
+  for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+    if (!mesh.vertices[v].alive()) continue;
+    const auto ring = ring_of(mesh, v);
+    REQUIRE(std::set(ring.begin(), ring.end()).size() == ring.size());
+  }
+}
+
+/// Any angle is allowed, as far as the options go.
+detail::Limits any_angle() {
+  detail::Limits limits;
+  limits.cos_deviation = -1;
+  return limits;
+}
+
+TEST_CASE("a sweep takes what costs little from its stretch alone, and leaves the surface what it is",
+          "[decimate]") {
+  for (std::uint32_t seed = 0; seed < 16; ++seed) {
+    const IndexedFaceSet shape = shapes()[seed % 4];
+    CollapseMesh mesh = mesh_of(seed < 8 ? shape : spread(shape), seed);
+    const std::uint32_t n = mesh.apex();
+    const Stretch stretch = seed % 2 == 0 ? Stretch{0, n} : Stretch{n / 8, n};
+    for (std::uint32_t v = 5; v < n; v += 31) mesh.vertices[v].source |= CollapseVertex::kLocked;
+    std::vector<CollapseVertex> before;
+    for (std::uint32_t v = 0; v < n; ++v) before.push_back(mesh.vertices[v]);
+    std::vector<CollapseMesh::Face> faces_before;
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) faces_before.push_back(mesh.face(h));
+    std::size_t inner = 0;
+    for (std::uint32_t v = stretch.begin; v < stretch.end; ++v)
+      inner +=
+          std::ranges::all_of(ring_of(mesh, v), [&](std::uint32_t r) { return stretch.holds(r); }) ? 1 : 0;
+    const detail::Limits limits = any_angle();
+    detail::DecimationState state{mesh, limits, mesh.face_count(), n, false, {}};
+    const float half = detail::cost_of_share(mesh, 0.5);
+    REQUIRE(half < detail::cost_of_share(mesh, 1));
+    detail::VertexSweep sweep(state, stretch, half);
+    sweep.run_over_all();
+    check(mesh);
+
+    std::size_t gone = 0;
+    for (std::uint32_t v = 0; v < n; ++v) {
+      const CollapseVertex& vertex = mesh.vertices[v];
+      CHECK(vertex.position == before[v].position);
+      if (!stretch.holds(v)) {
+        CHECK(vertex.leading == before[v].leading);
+        CHECK(vertex.source == before[v].source);
+        CHECK(vertex.weight == before[v].weight);
+      }
+      if (vertex.alive()) {
+        CHECK(!vertex.has(CollapseVertex::kTouched));
+        CHECK(!vertex.has(CollapseVertex::kHasParked));
+        CHECK(vertex.c <= half * 1.001f);
+        continue;
+      }
+      ++gone;
+      CHECK(stretch.holds(v));
+      CHECK(!vertex.has(CollapseVertex::kLocked));
+    }
+    for (std::size_t f = 0; f < faces_before.size(); ++f) {
+      const CollapseMesh::Face &face = mesh.face(static_cast<std::uint32_t>(4 * f)), &old = faces_before[f];
+      if (std::ranges::all_of(old.origin, [&](std::uint32_t v) { return stretch.holds(v); })) continue;
+      CHECK(face.origin == old.origin);
+      CHECK(face.twin == old.twin);
+    }
+    CHECK(8 * gone > inner);
+    CHECK(state.vertices + gone == n);
+    CHECK(state.faces + 2 * gone == mesh.face_count());
+    std::size_t faces = 0;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
+    CHECK(faces == state.faces);
+
+    // What could not go for the stretch's sake is told, each once.
+    std::vector<std::uint32_t> left_out(sweep.left_out().begin(), sweep.left_out().end());
+    std::ranges::sort(left_out);
+    CHECK(std::ranges::adjacent_find(left_out) == left_out.end());
+    for (std::uint32_t v = stretch.begin; v < stretch.end; ++v) {
+      if (before[v].has(CollapseVertex::kLocked) || !mesh.vertices[v].alive()) continue;
+      const auto ring = ring_of(mesh, v);
+      const auto leaves = [&](std::uint32_t r) { return !stretch.holds(r); };
+      if (ring.size() <= SweepBatch::kMost && std::ranges::any_of(ring, leaves))
+        CHECK(std::ranges::binary_search(left_out, v));
+    }
+    for (const std::uint32_t v : left_out) CHECK(mesh.vertices[v].alive());
+  }
+}
+
+TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
+  const double least = std::cos(std::acos(-1.0) / 6) - 1e-4;
+  std::size_t merged = 0, left = 0;
+  for (std::uint32_t v = 0; v < 300; v += 3) {
+    IndexedFaceSet shape = test::icosphere(3);
+    test::jitter(shape, 0.3f, v);
+    CollapseMesh mesh = mesh_of(shape, v);
+    std::vector<Vec3> normals;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) normals.push_back(normal_of(mesh, f));
+    const detail::Limits limits = any_angle();
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    // This one alone.
+    detail::VertexSweep(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity())
+        .run(std::span(&v, 1));
+    merged += state.vertices < mesh.apex() ? 1 : 0;
+    left += state.vertices == mesh.apex() ? 1 : 0;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+      if (mesh.alive(4 * f)) CHECK(static_cast<double>(glm::dot(normals[f], normal_of(mesh, f))) >= least);
+  }
+  CHECK(merged > 10);
+  CHECK(left > 10);
+}
+
+TEST_CASE("a surface is swept where it is far from its target, the more the farther, and never beyond",
+          "[decimate]") {
+  const auto left_of = [](IndexedFaceSet shape, std::size_t divisor, auto&& change) {
+    test::jitter(shape, 0.02f, 1);
+    CollapseMesh mesh = test::collapse_mesh_of(test::fitted(shape));
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    detail::Limits limits = any_angle();
+    limits.faces = mesh.face_count() / divisor;
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    state.part_faces = 128;
+    state.stretch_faces = 1024;
+    change(state, limits);
+    detail::sweep_if_far(state);
+    check(mesh);
+    std::size_t faces = 0;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
+    REQUIRE(faces == state.faces);
+    CHECK(state.faces >= limits.faces);
+    return state.faces;
+  };
+  const auto as_is = [](detail::DecimationState&, detail::Limits&) {};
+  const IndexedFaceSet grid = test::grid(30, 330);
+  const std::size_t all = grid.face_count(), near = left_of(grid, 8, as_is);
+  CHECK(left_of(grid, 7, as_is) == all);
+  CHECK(near < all * 2 / 3);
+  // What is at the ends of stretches goes, too.
+  const std::size_t in_one = left_of(grid, 8, [](auto& state, auto&) { state.stretch_faces = 1 << 20; });
+  CHECK(near < in_one * 21 / 20);
+  CHECK(left_of(grid, 16, as_is) == near);
+  const std::size_t far = left_of(grid, 100, as_is);
+  CHECK(far < near * 9 / 10);
+  CHECK(left_of(grid, 10000, as_is) < far);
+  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.keep_events = true; }) == all);
+  CHECK(left_of(grid, 8, [](auto&, auto& limits) { limits.error2 = 1; }) == all);
+  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.part_faces = state.mesh.face_count(); }) == all);
+  // It stops where it is told to.
+  for (const std::size_t rest : {std::size_t{1}, all * 4 / 5, all - 10}) {
+    CollapseMesh mesh = test::collapse_mesh_of(test::fitted(grid));
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    detail::Limits limits = any_angle();
+    limits.faces = rest;
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    detail::VertexSweep(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity()).run_over_all();
+    CHECK(state.faces + 1 >= rest);
+    CHECK((state.faces <= rest) == (rest > 1));
+  }
+}
+
+TEST_CASE("stretches are swept side by side as one after another", "[decimate]") {
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  IndexedFaceSet shape = test::grid(60, 400);
+  test::jitter(shape, 0.05f, 1);
+  const auto swept = [&](int threads) {
+    CollapseMesh mesh = test::collapse_mesh_of(test::fitted(shape));
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    const detail::Limits limits = any_angle();
+    detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+    state.part_faces = 1024;
+    state.stretch_faces = 2048;
+    tbb::task_arena(threads).execute([&] { detail::sweep_if_far(state); });
+    CHECK(state.faces < mesh.face_count() * 2 / 3);
+    std::vector<std::uint32_t> words;
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4)
+      for (std::size_t i = 0; i < 3; ++i) {
+        words.push_back(mesh.face(h).origin[i]);
+        words.push_back(mesh.face(h).twin[i]);
+      }
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+      words.push_back(mesh.vertices[v].leading);
+      words.push_back(std::bit_cast<std::uint32_t>(mesh.vertices[v].c));
+    }
+    return words;
+  };
+  const auto one = swept(1);
+  for (const int threads : {2, 8}) CHECK(swept(threads) == one);
+}
+
+TEST_CASE("decimation: what is far from its target is swept at first, on any number of threads alike",
+          "[decimate]") {
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  // Of the grid six rows are a stretch.
+  IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
+  test::jitter(mesh, 0.05f, 1);
+  for (const DecimateOptions& way : test::ways()) {
+    if (way.placement == CollapsePlacement::kMidpoint) continue;  // in the exact order
+    const auto on = [&](int threads, const DecimateOptions& options) {
+      tbb::task_arena arena(threads);
+      return arena.execute([&] {
+        auto result = detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+        REQUIRE(result);
+        REQUIRE(validate(result->mesh));
+        return std::move(*result);
+      });
+    };
+    const auto same = [](const Decimated& a, const Decimated& b) {
+      return std::ranges::equal(a.mesh.origins(), b.mesh.origins()) && a.positions == b.positions &&
+             a.vertex_map == b.vertex_map && a.collapses == b.collapses && a.error == b.error;
+    };
+    for (const double ratio : {0.0, 0.1, 0.2}) {
+      DecimateOptions options = way;
+      options.target_ratio = ratio;
+      const Decimated one = on(1, options);
+      for (const int threads : {2, 3, 8}) CHECK(same(on(threads, options), one));
+      // The order tells in a history, and where an error is promised.
+      options.keep_history = true;
+      const Decimated in_order = on(1, options);
+      CHECK(same(in_order, one) == (ratio > 0.125));
+      if (in_order.stop == DecimateStop::kTargetReached) CHECK(one.stop == DecimateStop::kTargetReached);
+      options.keep_history = false;
+      options.max_relative_error = 10;
+      CHECK(same(on(1, options), in_order));
+    }
+  }
+}
+
+}  // namespace vkmesh

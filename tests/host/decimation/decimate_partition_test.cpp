@@ -1,0 +1,404 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "decimation/cost/edge_batch.h"
+#include "decimation/decimate_support.h"
+#include "decimation/decimation_state.h"
+#include "decimation/edge_collapses.h"
+#include "decimation/order/collapse_order.h"
+#include "decimation/order/collapse_queues.h"
+#include "decimation/parallel/coarsen.h"
+#include "decimation/parallel/partition.h"
+#include "decimation/parallel/partitioned_collapses.h"
+#include "decimation/setup/initial_quadrics.h"
+#include "mesh/edit/collapse_mesh.h"
+#include "support/shapes.h"
+
+namespace vkmesh {
+namespace {
+
+using detail::CollapseMesh;
+using detail::Territory;
+using test::ring_of;
+
+constexpr std::uint8_t kInner = Territory::kInner;
+
+CollapseMesh mesh_of(const IndexedFaceSet& set) {
+  return test::collapse_mesh_of(test::fitted(set));
+}
+
+/// What makes it safe that threads work on the parts, by definition.
+void check(const CollapseMesh& mesh, const std::vector<std::uint8_t>& labels) {
+  for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+    if (!mesh.vertices[v].alive() || (labels[v] & kInner) == 0) continue;
+    for (const std::uint32_t r : ring_of(mesh, v))
+      if (r != mesh.apex()) REQUIRE((labels[r] & ~kInner) == (labels[v] & ~kInner));
+  }
+  for (std::uint32_t h = 0; h < mesh.half_edge_bound(); ++h) {
+    if (h % 4 == 3 || !mesh.alive(h)) continue;
+    const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
+    if (p == mesh.apex() || q == mesh.apex()) continue;
+    REQUIRE(mesh.at_seam(h) == (((labels[p] & labels[q]) & kInner) == 0));
+  }
+}
+
+bool link_condition(const CollapseMesh& mesh, std::uint32_t p, std::uint32_t q) {
+  const auto at_p = ring_of(mesh, p), at_q = ring_of(mesh, q);
+  const std::set<std::uint32_t> one(at_p.begin(), at_p.end()), other(at_q.begin(), at_q.end());
+  return std::ranges::count_if(one, [&](std::uint32_t v) { return other.contains(v); }) == 2 &&
+         at_p.size() + at_q.size() > 7;
+}
+
+/// Parts of a surface and the seam between them, one after another on one thread.
+template <class Placement>
+class Parts {
+ public:
+  explicit Parts(const IndexedFaceSet& shape, std::size_t count) : mesh_(mesh_of(shape)) {
+    detail::sum_quadrics(mesh_, {});
+    limits_.cos_deviation = std::cos(1.3f);
+    labels_ = detail::divide(mesh_, count);
+    for (std::size_t i = 0; i <= count; ++i)
+      shares_.push_back(std::make_unique<Share>(
+          state_, shape.face_count(),
+          Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kSeam)));
+    for (std::uint32_t h = 0; h < mesh_.half_edge_bound(); h += 4) detail::mark_seam(labels_, mesh_.face(h));
+    worker_.work_on(*shares_.back());
+    worker_.fill([&](CollapseMesh::Face& face) { return detail::mark_seam(labels_, face); },
+                 [&](std::uint8_t part, std::uint32_t h, float cost) {
+                   shares_[part == Territory::kSeam ? count : part]->queue.insert(h, cost);
+                 });
+  }
+
+  /// False when nothing is left. No run removes more than about `most` faces.
+  bool round(std::size_t most) {
+    constexpr std::uint32_t kOctaves = 32;
+    std::uint32_t first = MonotoneQueue::kNone;
+    for (const auto& share : shares_) first = std::min(first, share->queue.first());
+    if (first == MonotoneQueue::kNone) return false;
+    last_ = first + kOctaves;
+    for (const auto& share : shares_) {
+      worker_.work_on(*share);
+      if (share == shares_.back())
+        for (const auto& other : shares_) worker_.take_over(*other);
+      limits_.faces = state_.faces - std::min(most, state_.faces);
+      const std::vector<Known> before = known_outside(share->territory);
+      worker_.run(last_);
+      CHECK(known_outside(share->territory) == before);
+    }
+    return true;
+  }
+
+  /// What the next round relies on: each edge is parked, or one of its halves stands in a queue, and no
+  /// higher than where it belongs now or the rounds have come to. Of a point of least error that is too far
+  /// the cost may fall, which nobody looks after.
+  void check_queues() {
+    std::map<std::uint32_t, std::uint32_t> lowest;
+    std::size_t foreign = 0;
+    for (std::size_t part = 0; part < shares_.size(); ++part) {
+      detail::LazyQueue queue = shares_[part]->queue;
+      std::array<std::uint32_t, 64> ids;
+      while (const std::size_t count = queue.take(ids))
+        for (std::size_t i = 0; i < count; ++i) {
+          const std::uint32_t h = ids[i];
+          const bool inner = mesh_.alive(h) && mesh_.queued(h) && !mesh_.at_seam(h);
+          foreign += inner && part + 1 < shares_.size() && (labels_[mesh_.origin(h)] & ~kInner) != part;
+          std::uint32_t& bucket = lowest.try_emplace(h, MonotoneQueue::kNone).first->second;
+          bucket = std::min(bucket, queue.bucket());
+        }
+    }
+    std::size_t twice = 0, nowhere = 0, too_high = 0;
+    for (std::uint32_t h = 0; h < 4 * mesh_.face_count(); ++h) {
+      if (h % 4 == 3 || !mesh_.alive(h)) continue;
+      const std::uint32_t t = mesh_.twin(h);
+      twice += mesh_.queued(h) + mesh_.queued(t) + mesh_.parked(h) != 1 ? 1 : 0;
+      if (!mesh_.queued(h)) continue;
+      const auto found = lowest.find(h);
+      if (found == lowest.end()) {
+        ++nowhere;
+        continue;
+      }
+      const std::array<detail::EdgeBatch::Ends, 1> ends = {{{mesh_.origin(h), mesh_.target(h)}}};
+      batch_.gather(mesh_.vertices.data(), ends);
+      Placement::place(batch_, 1);
+      const std::uint32_t due = MonotoneQueue::bucket(batch_.cost[0]) + 1;  // the next one, by rounding
+      if (Placement::kMayFall != detail::MayFall::kNone && found->second > std::max(due, last_)) ++too_high;
+    }
+    CHECK(twice == 0);
+    CHECK(nowhere == 0);
+    CHECK(too_high == 0);
+    CHECK(foreign == 0);
+  }
+
+  /// Between rounds no edge that is parked could collapse.
+  void check_parked() {
+    worker_.work_on(*shares_.back());
+    worker_.hold();
+    CHECK(state_.outcome.held[static_cast<std::size_t>(detail::Legality::kLegal)] == 0);
+  }
+
+  [[nodiscard]] std::size_t collapses() const { return state_.outcome.collapses; }
+
+ private:
+  using Worker = detail::EdgeCollapses<Placement, detail::LazyQueue>;
+  using Share = typename Worker::Share;
+
+  /// What a part may not change where it does not belong.
+  using Known = std::pair<std::array<float, 4>, bool>;
+  [[nodiscard]] std::vector<Known> known_outside(const Territory& territory) const {
+    std::vector<Known> known;
+    for (std::uint32_t v = 0; v < mesh_.apex() && territory.is_part(); ++v) {
+      const detail::CollapseVertex& vertex = mesh_.vertices[v];
+      const auto& [x, y, z] = vertex.position;
+      if (!territory.holds(v)) known.push_back({{x, y, z, vertex.weight}, vertex.alive()});
+    }
+    return known;
+  }
+
+  CollapseMesh mesh_;
+  detail::Limits limits_;
+  detail::DecimationState state_{mesh_, limits_, mesh_.face_count(), mesh_.apex(), false, {}};
+  std::vector<std::uint8_t> labels_;
+  std::vector<std::unique_ptr<Share>> shares_;  // the last is of the seam
+  Worker worker_{mesh_};
+  detail::EdgeBatch batch_;
+  std::uint32_t last_ = 0;
+};
+
+template <class Placement>
+void check_rounds(const IndexedFaceSet& shape) {
+  for (const std::size_t most : {shape.face_count(), std::size_t{20}}) {
+    Parts<Placement> parts(shape, 4);
+    parts.check_queues();
+    while (parts.round(most)) {
+      parts.check_queues();
+      parts.check_parked();
+    }
+    CHECK(parts.collapses() > shape.points.size() / 2);
+  }
+}
+
+/// Decimation in parts as decimate() does it, of a mesh to be looked into.
+struct InParts {
+  InParts(const IndexedFaceSet& shape, std::size_t part_faces, std::size_t to_faces) : mesh(mesh_of(shape)) {
+    mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
+    detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
+    limits.cos_deviation = std::cos(1.3f);
+    limits.faces = to_faces;
+    state.part_faces = part_faces;
+  }
+
+  CollapseMesh mesh;
+  detail::Limits limits;
+  detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
+};
+using OptimalInParts = detail::PartedCollapses<detail::OptimalPlacement, detail::LazyQueue, false>;
+
+}  // namespace
+
+TEST_CASE("parts of a surface are compact, of one size, and stay apart through collapses on the seam",
+          "[decimate]") {
+  const std::vector<IndexedFaceSet> shapes = {test::icosphere(3), test::torus(24, 14), test::grid(20, 22)};
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    const IndexedFaceSet& shape = shapes[seed % shapes.size()];
+    CollapseMesh mesh = mesh_of(shape);
+    const std::size_t parts = seed < 3 ? 4 : 8;
+    std::vector<std::uint8_t> labels = detail::divide(mesh, parts);
+    REQUIRE(labels.size() == shape.points.size() + 1);
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) detail::mark_seam(labels, mesh.face(h));
+    check(mesh, labels);
+    std::vector<std::size_t> size(parts);
+    std::size_t seam = 0;
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+      REQUIRE((labels[v] & ~kInner) < static_cast<int>(parts));
+      ++size[labels[v] & ~kInner];
+      const auto ring = ring_of(mesh, v);
+      const bool foreign = std::ranges::any_of(ring, [&](std::uint32_t r) {
+        return r != mesh.apex() && (labels[r] & ~kInner) != (labels[v] & ~kInner);
+      });
+      REQUIRE(foreign == ((labels[v] & kInner) == 0));
+      seam += foreign ? 1 : 0;
+    }
+    // As even as rows of equal coordinates allow; a compact part of m vertices has about 4√m on its rim.
+    const auto [least, most] = std::ranges::minmax(size);
+    CHECK(3 * least > most);
+    CHECK(seam < shape.points.size() * 7 / 10);
+
+    Territory everywhere(labels, Territory::kSeam);
+    std::mt19937 random(seed);
+    std::size_t collapses = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const auto h = static_cast<std::uint32_t>(random() % mesh.half_edge_bound());
+      if (h % 4 == 3 || !mesh.alive(h) || !mesh.at_seam(h)) continue;
+      const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
+      if (p == mesh.apex() || q == mesh.apex() || !link_condition(mesh, p, q)) continue;
+      const auto ring = ring_of(mesh, p);
+      std::vector<std::uint32_t> others;
+      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out))
+        others.push_back(out);
+      mesh.collapse(h, others);
+      everywhere.merge(mesh, p, q, ring);
+      if (++collapses % 8 == 0) check(mesh, labels);
+    }
+    CHECK(collapses > 50);
+    check(mesh, labels);
+
+    // Parts become one again two by two, and what lay between them is no seam any more.
+    for (std::size_t left = parts; left > 1; left /= 2) {
+      const std::vector<std::uint8_t> before = labels;
+      std::vector<std::uint32_t> faces;
+      for (std::uint32_t f = 0; f < mesh.half_edge_bound() / 4; ++f)
+        if (mesh.alive(4 * f)) faces.push_back(f);
+      detail::join_halves(mesh, labels, faces);
+      check(mesh, labels);
+      for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
+        if (!mesh.vertices[v].alive()) continue;
+        REQUIRE((labels[v] & ~kInner) == (before[v] & ~kInner) / 2);
+        const auto ring = ring_of(mesh, v);
+        const bool foreign = std::ranges::any_of(ring, [&](std::uint32_t r) {
+          return r != mesh.apex() && (labels[r] & ~kInner) != (labels[v] & ~kInner);
+        });
+        REQUIRE(foreign == ((labels[v] & kInner) == 0));
+      }
+    }
+  }
+}
+
+TEST_CASE("no edge is lost or comes late between the parts of a surface", "[decimate]") {
+  for (IndexedFaceSet shape : {test::icosphere(3), test::torus(30, 16), test::grid(20, 22)}) {
+    test::jitter(shape, 0.05f, 1);
+    check_rounds<detail::OptimalPlacement>(shape);
+    check_rounds<detail::EndPlacement>(shape);
+  }
+}
+
+TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimate]") {
+  InParts all(test::grid(61, 80), 1, 0);  // of some blocks of faces
+  detail::EdgeCollapses<detail::OptimalPlacement, detail::LazyQueue> worker(all.mesh);
+  decltype(worker)::Share share(all.state, 0);
+  worker.work_on(share);
+  std::vector<int> prepared(all.mesh.face_count()), times(all.mesh.half_edge_bound());
+  std::size_t misnumbered = 0;
+  const auto number = [](std::uint32_t h) { return static_cast<std::uint8_t>(37 * h); };
+  worker.fill(
+      [&](const CollapseMesh::Face& face) {
+        ++prepared[face.source];
+        const std::uint32_t h = 4 * face.source;
+        return std::array<std::uint8_t, 3>{number(h), number(h + 1), number(h + 2)};
+      },
+      [&](std::uint8_t given, std::uint32_t h, float) {
+        ++times[h];
+        misnumbered += given == number(h) ? 0 : 1;
+      });
+  CHECK(misnumbered == 0);
+  CHECK(std::ranges::count(prepared, 1) == static_cast<std::ptrdiff_t>(prepared.size()));
+  std::size_t wrong = 0;
+  for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h) {
+    if (h % 4 == 3) continue;
+    const std::uint32_t t = all.mesh.twin(h);
+    wrong += times[h] + times[t] == 1 && all.mesh.queued(h) == (times[h] == 1) ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("each half of an edge knows whether it is at the seam before parts are at work", "[decimate]") {
+  for (const IndexedFaceSet& shape : {test::grid(20, 22), test::torus(24, 14)}) {
+    InParts all(shape, shape.face_count() / 4, 0);
+    const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
+    OptimalInParts collapses(all.state);
+    collapses.fill();
+    check(all.mesh, labels);
+    std::size_t seam = 0;
+    for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h)
+      seam += h % 4 != 3 && all.mesh.at_seam(h) ? 1 : 0;
+    CHECK(seam > 100);
+  }
+}
+
+TEST_CASE("what has gone before a surface is divided is on no seam", "[decimate]") {
+  InParts all(test::grid(60, 22), 1, 300);
+  all.state.stretch_faces = 1 << 20;
+  detail::sweep_if_far(all.state);
+  REQUIRE(all.state.faces < all.mesh.face_count() * 3 / 4);
+  const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
+  std::array<std::size_t, 4> sizes{};
+  for (std::uint32_t v = 0; v < all.mesh.apex(); ++v) {
+    if (!all.mesh.vertices[v].alive()) continue;
+    const std::uint8_t part = labels[v] & ~kInner;
+    ++sizes.at(part);
+    const auto ring = ring_of(all.mesh, v);
+    const bool inner = std::ranges::all_of(
+        ring, [&](std::uint32_t r) { return r == all.mesh.apex() || (labels[r] & ~kInner) == part; });
+    CHECK(((labels[v] & kInner) != 0) == inner);
+  }
+  CHECK(3 * std::ranges::min(sizes) > std::ranges::max(sizes));
+}
+
+TEST_CASE("what was pruned is of no part", "[decimate]") {
+  const IndexedFaceSet shape = test::both(test::icosphere(3), test::grid(5, 4), {3.0f, 0.0f, 0.0f});
+  IndexedFaceSet small = shape;
+  for (std::size_t v = shape.points.size() - 30; v < shape.points.size(); ++v) small.points[v] *= 0.1f;
+  DecimateOptions options;
+  options.prune_relative_size = 0.25;
+  options.target_ratio = 0.1;
+  const auto done = detail::decimate({small.points, small.corners}, options, detail::CollapseOrder::kParted);
+  REQUIRE(done);
+  REQUIRE(validate(done->mesh));
+  CHECK(done->pruned_components == 1);
+  CHECK(done->pruned_faces == 40);
+  CHECK(done->mesh.face_count() == 132);
+  for (std::size_t v = 0; v < small.points.size(); ++v)
+    CHECK((done->vertex_map[v] == kInvalid) == (v + 30 >= small.points.size()));
+}
+
+TEST_CASE("parts that become one again lose nothing", "[decimate]") {
+  IndexedFaceSet half = test::icosphere(4);
+  test::jitter(half, 0.05f, 1);
+  const IndexedFaceSet shape = test::both(half, half, {3.0f, 0.0f, 0.0f});
+  // So near the target that there is no round before.
+  const std::size_t part_faces = shape.face_count() / 2, to_faces = shape.face_count() - 300;
+  InParts all(shape, part_faces, to_faces);
+  OptimalInParts collapses(all.state);
+  collapses.fill();
+  while (!all.state.reached()) REQUIRE(collapses.step());
+  std::array<std::size_t, 2> gone{};
+  for (std::uint32_t v = 0; v < all.mesh.apex(); ++v)
+    gone[v < half.points.size() ? 0 : 1] += all.mesh.vertices[v].alive() ? 0 : 1;
+  CHECK(gone[0] + gone[1] == 150);
+  CHECK(std::min(gone[0], gone[1]) > 60);
+}
+
+TEST_CASE("a history of parts has at any time done as much in each", "[decimate]") {
+  IndexedFaceSet half = test::icosphere(4);
+  test::jitter(half, 0.05f, 1);
+  const IndexedFaceSet mesh = test::both(half, half, {3.0f, 0.0f, 0.0f});
+  for (DecimateOptions options : test::ways()) {
+    if (options.operation == DecimateOperation::kVertexRemoval ||
+        options.placement == CollapsePlacement::kMidpoint)
+      continue;  // of one part
+    options.keep_history = true;
+    options.target_ratio = 0.2;
+    const auto done = detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+    REQUIRE(done);
+    std::ptrdiff_t ahead = 0, most = 0;
+    for (const Collapse<Vec3>& c : done->history) {
+      ahead += c.kept < half.points.size() ? 1 : -1;
+      most = std::max(most, std::abs(ahead));
+    }
+    CHECK(done->history.size() > mesh.points.size() / 2);
+    CHECK(100 * most < 2 * static_cast<std::ptrdiff_t>(done->history.size()));
+  }
+}
+
+}  // namespace vkmesh

@@ -1,0 +1,83 @@
+// What the tests of decimation share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/decimation/decimate.h>
+
+#include "mesh/edit/collapse_mesh.h"
+#include "support/shapes.h"
+
+namespace vkmesh::test {
+
+template <class Point>
+BasicDecimated<Point> run(const HalfEdgeMesh& mesh, const std::vector<Point>& points,
+                          const DecimateOptions& options) {
+  auto result = decimate(mesh, std::span<const Point>(points), options);
+  if (!result) FAIL(result.error().describe());
+  if (const auto valid = validate(result->mesh); !valid) FAIL(valid.error().describe());
+  return std::move(*result);
+}
+inline Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
+  return run(half_edges(mesh), mesh.points, options);
+}
+
+/// Each way to collapse, and vertex removal.
+inline std::vector<DecimateOptions> ways() {
+  std::vector<DecimateOptions> all(5);
+  all[1].placement = CollapsePlacement::kMidpoint;
+  all[2].placement = CollapsePlacement::kEndpoint;
+  all[3].operation = DecimateOperation::kHalfEdgeCollapse;
+  all[4].operation = DecimateOperation::kVertexRemoval;
+  return all;
+}
+
+/// As decimation begins with it: quadrics of nothing, and the apex nowhere.
+inline detail::CollapseMesh collapse_mesh_of(const IndexedFaceSet& set) {
+  using detail::CollapseMesh;
+  CollapseMesh mesh;
+  std::vector<std::uint32_t> leading;
+  const auto face_of = [&](std::size_t f) {
+    const auto corners = set.face(f);
+    return CollapseMesh::Face{{corners[0], corners[1], corners[2]}, 0, {}, static_cast<std::uint32_t>(f)};
+  };
+  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == CollapseMesh::Built::kDone);
+  for (std::uint32_t v = 0; v < set.points.size(); ++v) {
+    mesh.vertices[v] = {};
+    mesh.vertices[v].position = {set.points[v].x, set.points[v].y, set.points[v].z};
+    mesh.vertices[v].source = v;
+    mesh.vertices[v].leading = leading[v];
+  }
+  mesh.vertices[mesh.apex()] = {};
+  mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
+  return mesh;
+}
+
+/// Fitted into the cube that parts are cut in.
+inline IndexedFaceSet fitted(IndexedFaceSet set) {
+  float size = 0;
+  for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (Vec3& p : set.points) p = 0.5f / size * p;
+  return set;
+}
+
+/// The neighbours of a vertex, counter-clockwise; that to which its half-edge leads is the last.
+inline std::vector<std::uint32_t> ring_of(const detail::CollapseMesh& mesh, std::uint32_t v) {
+  std::vector<std::uint32_t> ring;
+  std::uint32_t h = mesh.vertices[v].leading;
+  do {
+    h = mesh.around_vertex(h);
+    ring.push_back(mesh.target(h));
+  } while (h != mesh.vertices[v].leading);
+  return ring;
+}
+
+}  // namespace vkmesh::test

@@ -1,0 +1,220 @@
+#include <random>
+#include <string>
+#include <vector>
+
+#include "io/io_support.h"
+
+using namespace vkmesh;
+using namespace vkmesh::test;
+
+namespace {
+
+using Floats = std::vector<float>;
+using Corners = std::vector<std::uint32_t>;
+
+const std::string kHead = "#VRML V2.0 utf8\n";
+const std::string kCoord = "coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] } ";
+const std::string kTwo = kCoord + "coordIndex [ 0 1 2 -1 0 2 3 -1 ] ";
+
+MeshFile scene_file(const std::string& body) {
+  return parse_file(kHead + body, "a.wrl");
+}
+
+IndexedFaceSet scene(const std::string& body) {
+  return std::get<IndexedFaceSet>(scene_file(body).geometry);
+}
+
+std::string face_set(const std::string& fields) {
+  return "Shape { geometry IndexedFaceSet { " + fields + "} } ";
+}
+
+Floats values_of(const std::vector<Channel>& channels, const std::string& name) {
+  const Channel* channel = find_channel(channels, name);
+  if (channel == nullptr) return {};
+  return std::get<Floats>(channel->values);
+}
+
+void check_sound(std::string_view content) {
+  const auto file = parse_mesh(as_bytes(content), "a.wrl");
+  if (!file) {
+    if (file.error().code != ErrorCode::kUnreadable || file.error().message.empty())
+      FAIL(file.error().describe());
+    return;
+  }
+  const auto bytes = encode_mesh(std::get<IndexedFaceSet>(file->geometry),
+                                 write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
+  if (!bytes) FAIL(bytes.error().describe());
+}
+
+}  // namespace
+
+TEST_CASE("VRML 2 shapes become faces and points", "[io][vrml]") {
+  const MeshFile file = scene_file(face_set(kTwo));
+  CHECK(file.format == FileFormat::kVrml2);
+  CHECK(file.notes.empty());
+  CHECK(std::get<IndexedFaceSet>(file.geometry).corners == Corners{0, 1, 2, 0, 2, 3});
+  CHECK(scene(face_set("ccw FALSE " + kTwo)).corners == Corners{0, 2, 1, 0, 3, 2});
+  CHECK(scene(face_set(kCoord + "coordIndex [ 0 1 2 3 ] ")).face_offsets == Corners{0, 4});
+  const IndexedFaceSet cloud = scene(
+      "Shape { geometry PointSet { coord Coordinate { point [ 1 2 3, 4 5 6 ] } "
+      "color Color { color [ 1 0 0, 0 0.5 0 ] } } }");
+  CHECK(cloud.points == std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+  CHECK(values_of(cloud.point_channels, "color") == Floats{1, 0, 0, 0, 0.5f, 0});
+}
+
+TEST_CASE("VRML 2 attributes are of points, corners or faces", "[io][vrml]") {
+  const std::string color = "color Color { color [ 0 0 0, 1 0 0, 0 1 0, 0 0 1 ] } ";
+  CHECK(values_of(scene(face_set(kTwo + color)).point_channels, "color") ==
+        Floats{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+  CHECK(values_of(scene(face_set(kTwo + color + "colorIndex [ 3 3 3 -1 1 1 0 -1 ] ")).corner_channels,
+                  "color") == Floats{0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0});
+  CHECK(values_of(scene(face_set(kTwo + color + "colorPerVertex FALSE ")).face_channels, "color") ==
+        Floats{0, 0, 0, 1, 0, 0});
+  CHECK(values_of(scene(face_set(kTwo + color + "colorPerVertex FALSE colorIndex [ 3 2 ] ")).face_channels,
+                  "color") == Floats{0, 0, 1, 0, 1, 0});
+  const std::string normal = "normal Normal { vector [ 0 0 1, 0 1 0, 1 0 0, 0 0 -1 ] } ";
+  CHECK(values_of(scene(face_set(kTwo + normal)).point_channels, "normal") ==
+        Floats{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1});
+  CHECK(values_of(scene(face_set(kTwo + normal + "normalPerVertex FALSE normalIndex [ 1 0 ] ")).face_channels,
+                  "normal") == Floats{0, 1, 0, 0, 0, 1});
+  const std::string uv = "texCoord TextureCoordinate { point [ 0 0, 1 0, 1 1, 0 1 ] } ";
+  CHECK(values_of(scene(face_set(kTwo + uv)).point_channels, "uv") == Floats{0, 0, 1, 0, 1, 1, 0, 1});
+  CHECK(values_of(scene(face_set(kTwo + uv + "texCoordIndex [ 3 3 3 -1 1 1 0 -1 ] ")).corner_channels,
+                  "uv") == Floats{0, 1, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0});
+  const std::string red =
+      "Shape { appearance DEF Red Appearance { material Material { diffuseColor 1 0 0 } "
+      "texture ImageTexture { url \"a.png\" } } geometry IndexedFaceSet { ";
+  CHECK(values_of(scene(red + kTwo + "} }").face_channels, "color") == Floats{1, 0, 0, 1, 0, 0});
+  CHECK(values_of(scene(red + kTwo + "} } " + face_set(kTwo)).face_channels, "color") ==
+        Floats{1, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1});
+}
+
+TEST_CASE("VRML 2 groups move and choose their children", "[io][vrml]") {
+  const std::string triangle =
+      "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 1 2 3, 0 0 0, 5 5 5 ] } "
+      "coordIndex [ 0 1 2 ] } } ";
+  const auto first = [&](const std::string& head, const std::string& tail) {
+    return scene(head + triangle + tail).points.at(0);
+  };
+  const auto check_near = [](const Vec3& a, const Vec3& b) {
+    for (int axis = 0; axis < 3; ++axis) CHECK(a[axis] == Approx(b[axis]).margin(1e-6));
+  };
+  // As for Inventor's Transform; the children may precede the fields.
+  const std::string quarter = "1.5707963267948966";
+  check_near(first("Transform { children [ ",
+                   "] translation 10 0 0 rotation 0 0 1 " + quarter + " scale 2 3 1 center 1 1 1 }"),
+             {8, 1, 3});
+  check_near(first("Transform { scale 10 1 1 scaleOrientation 0 0 1 " + quarter + " children ", "}"),
+             {1, 20, 3});
+  check_near(first("Transform { rotation 0 0 1 " + quarter + " scale 1 2 1 scaleOrientation 1 0 0 " +
+                       quarter + " children ",
+                   "}"),
+             {-2, 1, 6});
+  CHECK(first("Transform { translation 1 0 0 children Transform { scale 2 2 2 children [ ", "] } }") ==
+        Vec3(3, 4, 6));
+  // A transform ends with its node.
+  CHECK(scene("Transform { translation 1 0 0 } " + triangle).points[0] == Vec3(1, 2, 3));
+  for (const char* group : {"Group", "Anchor", "Billboard", "Collision"})
+    CHECK(first(std::string(group) + " { children [ ", "] }") == Vec3(1, 2, 3));
+  const std::string other = face_set(kTwo);
+  CHECK(scene("Switch { whichChoice 1 choice [ " + triangle + other + "] }").corners.size() == 6);
+  CHECK(scene("Switch { choice [ " + triangle + other + "] whichChoice 0 }").corners.size() == 3);
+  const MeshFile none = scene_file(triangle + "Switch { choice [ " + triangle + other + "] }");
+  CHECK(none.notes == std::vector<std::string>{"2 children that a 'Switch' does not choose ignored"});
+  const MeshFile lod = scene_file("LOD { range [ 5 ] level [ " + triangle + other + "] }");
+  CHECK(std::get<IndexedFaceSet>(lod.geometry).corners.size() == 3);
+  CHECK(lod.notes == std::vector<std::string>{"1 levels of detail but the first ignored"});
+}
+
+TEST_CASE("VRML 2 nodes are used again", "[io][vrml]") {
+  const IndexedFaceSet mesh =
+      scene("DEF S " + face_set(kTwo) + "Transform { translation 0 0 5 children [ USE S ] } USE S");
+  CHECK(mesh.points.size() == 8);
+  CHECK(mesh.corners.size() == 18);
+  CHECK(mesh.points[4] == Vec3(0, 0, 5));
+  const IndexedFaceSet coords =
+      scene(face_set("coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 1 1 0 ] } coordIndex [ 0 1 2 ] ") +
+            face_set("coord USE C coordIndex [ 2 1 0 ] "));
+  CHECK(coords.points.size() == 3);
+  CHECK(coords.corners == Corners{0, 1, 2, 2, 1, 0});
+  std::string laughs = "DEF N0 Group { children [ " + face_set(kTwo) + "] }\n";
+  for (int i = 1; i < 40; ++i) {
+    const std::string use = " USE N" + std::to_string(i - 1);
+    laughs += "DEF N" + std::to_string(i) + " Group { children [" + use + use + use + use + " ] }\n";
+  }
+  CHECK_THAT(parse_error(kHead + laughs, "a.wrl").message, Catch::Contains("out of proportion to the file"));
+}
+
+TEST_CASE("VRML 2 content that is not kept is named", "[io][vrml]") {
+  const MeshFile file = scene_file(
+      "PROTO Wheel [ field SFFloat r 1 exposedField SFNode n Group { } ] { Transform { scale IS r } }\n"
+      "EXTERNPROTO Far [ field SFFloat r ] [ \"a.wrl#Far\" ]\nEXTERNPROTO Near [ ] \"b.wrl\"\n"
+      "WorldInfo { title \"a\" } DEF T TimeSensor { } Wheel { r 2 } Wheel { } Inline { url \"c.wrl\" }\n"
+      "Script { field SFBool a TRUE eventIn SFTime b url \"javascript: { }\" }\n"
+      "Shape { geometry IndexedLineSet { coord Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }\n"
+      "Shape { geometry Box { } }\n" +
+      face_set(kTwo) + "ROUTE T.fraction_changed TO P.set_fraction\n");
+  CHECK(file.notes == std::vector<std::string>{"3 PROTO definitions ignored", "1 ROUTE statements ignored",
+                                               "1 'Box' nodes ignored", "1 'IndexedLineSet' nodes ignored",
+                                               "1 'Inline' nodes ignored", "1 'Script' nodes ignored",
+                                               "1 'TimeSensor' nodes ignored", "2 'Wheel' nodes ignored",
+                                               "1 'WorldInfo' nodes ignored"});
+  CHECK(std::get<IndexedFaceSet>(file.geometry).corners.size() == 6);
+}
+
+TEST_CASE("malformed VRML 2 files are refused where they break", "[io][vrml][bad]") {
+  const auto error = [](const std::string& body) { return parse_error(kHead + body, "a.wrl"); };
+  CHECK(error(face_set(kCoord + "coordIndex [ 0 1\n9 -1 ] ")).where.line == 3u);
+  CHECK(
+      error(face_set(kTwo + "color Color { color [ 0 0 0 ] } colorIndex [ 0 0 0 -1\n0 0 1 ] ")).where.line ==
+      3u);
+  CHECK_THAT(error("Shape { geometry Box { } }").message, Catch::Contains("neither polygons nor points"));
+  CHECK_THAT(error("Group { children [ Group { } coordIndex 1 ] }").message, Catch::Contains("expected '{'"));
+  CHECK_THAT(error("PROTO A [ ] { Group {").message, Catch::Contains("PROTO has no body that ends"));
+  CHECK_THAT(error("Group { children [ Group { } ").message, Catch::Contains("list of nodes does not end"));
+}
+
+TEST_CASE("VRML 2 round trips are lossless for what they hold", "[io][vrml]") {
+  IndexedFaceSet cloud;
+  cloud.points = icosphere(1).points;
+  cloud.point_channels = {{"color", 3, ramp<float>(126, 0.005)}};
+  for (const IndexedFaceSet& mesh :
+       with_scene_channels({torus(12, 8), quad_cube(), mixed_polygons(), cloud, IndexedFaceSet{}})) {
+    WriteOptions options = write_as(FileFormat::kVrml2, FileEncoding::kAscii);
+    options.comment = "made by a test";
+    const std::string bytes = encode(mesh, options);
+    const MeshFile file = parse_file(bytes, "a.bin");
+    CHECK(file.format == FileFormat::kVrml2);
+    CHECK(file.notes.empty());
+    require_same(mesh, std::get<IndexedFaceSet>(file.geometry));
+    CHECK(encode(std::get<IndexedFaceSet>(file.geometry), options) == bytes);
+  }
+}
+
+TEST_CASE("VRML 2 files cut or changed anywhere are refused or sound", "[io][vrml][bad][fuzz]") {
+  const std::string content =
+      kHead +
+      "PROTO A [ field SFFloat r 1 ] { Group { } }\nDEF G Group { children [ Transform { rotation 0 1 0 1 "
+      "scale 1 2 1 children [ " +
+      face_set(
+          kTwo +
+          "ccw FALSE normal Normal { vector [ 0 0 1, 0 1 0 ] } normalPerVertex FALSE normalIndex [ 1 0 ] "
+          "color Color { color [ 1 0 0, 0 1 0 ] } colorIndex [ 0 0 1 -1 1 1 0 -1 ] ") +
+      "] } ] }\nLOD { level [ USE G ] }\nShape { geometry PointSet { coord Coordinate { point [ 1 2 3 ] } } "
+      "}\n"
+      "A { r 2 }\nROUTE G.a TO G.b\n";
+  CHECK(parse(content, "a.wrl").face_count() == 4);
+  for (std::size_t size = 0; size < content.size(); ++size) check_sound(content.substr(0, size));
+  std::mt19937 random(31);
+  for (std::size_t at = kHead.size(); at < content.size(); ++at)
+    for (int variant = 0; variant < 6; ++variant) {
+      std::string bytes = content;
+      if (variant == 0)
+        bytes.erase(at, 1);
+      else if (variant < 4)
+        bytes[at] = "0123456789-+.eE#{}[]\"(), \n"[random() % 26];
+      else
+        bytes[at] = static_cast<char>(random());
+      check_sound(bytes);
+    }
+}

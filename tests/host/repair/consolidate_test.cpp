@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include <vkmesh/repair/consolidate.h>
+
+#include "support/shapes.h"
+
+using namespace vkmesh;
+
+namespace {
+
+ConsolidateReport report_of(const IndexedFaceSet& mesh) {
+  const auto report = survey(mesh);
+  if (!report) FAIL(report.error().describe());
+  return *report;
+}
+
+}  // namespace
+
+TEST_CASE("consolidate keeps the numbering: vertex i is point i, half-edge i corner i") {
+  const IndexedFaceSet set = test::torus(7, 5);
+  const auto result = consolidate(set);
+  REQUIRE(result);
+  CHECK(std::equal(set.corners.begin(), set.corners.end(), result->mesh.origins().begin()));
+  CHECK(result->report.manifold());
+  CHECK(result->report.defects.empty());
+  CHECK(result->report.edges == 105);
+  CHECK(result->report.boundary_edges == 0);
+}
+
+TEST_CASE("consolidate finds the same twins as comparing all pairs of edges") {
+  IndexedFaceSet set = test::cylinder(3, 6);
+  std::mt19937 random(5);
+  // In a random order of faces and points.
+  std::vector<std::uint32_t> name(set.points.size());
+  for (std::uint32_t i = 0; i < name.size(); ++i) name[i] = i;
+  for (std::size_t i = name.size() - 1; i > 0; --i) std::swap(name[i], name[random() % (i + 1)]);
+  for (auto& c : set.corners) c = name[c];
+  for (std::size_t f = set.face_count() - 1; f > 0; --f) {
+    const std::size_t g = random() % (f + 1);
+    for (std::size_t i = 0; i < 3; ++i) std::swap(set.corners[3 * f + i], set.corners[3 * g + i]);
+  }
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  CHECK(validate(mesh));
+  for (std::uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+    std::uint32_t expected = kInvalid;
+    for (std::uint32_t g = 0; g < mesh.half_edge_count(); ++g)
+      if (mesh.origin(HalfEdgeId(g)) == mesh.target(HalfEdgeId(h)) &&
+          mesh.target(HalfEdgeId(g)) == mesh.origin(HalfEdgeId(h)))
+        expected = g;
+    CHECK(mesh.twins()[h] == expected);
+  }
+}
+
+TEST_CASE("a vertex of high valence is sorted right") {
+  // A cone over 100 points: the apex has more records than the sorting network takes.
+  IndexedFaceSet set;
+  set.points.assign(101, Vec3(0.0f));
+  for (std::uint32_t i = 0; i < 100; ++i)
+    set.corners.insert(set.corners.end(), {0, 1 + i, 1 + (i + 37) % 100});
+  const auto result = consolidate(set);
+  REQUIRE(result);
+  CHECK(validate(result->mesh));
+  CHECK(result->report.edges == 200);
+  CHECK(result->report.boundary_edges == 100);
+}
+
+TEST_CASE("each defect is refused with its count and first element") {
+  SECTION("three faces on an edge") {
+    const auto result = to_half_edge_mesh(test::fin());
+    REQUIRE_FALSE(result);
+    CHECK(result.error().code == ErrorCode::kUnsuitable);
+    CHECK_THAT(result.error().message, Catch::Contains("1 edge with three or more faces (points 0 and 1)"));
+    CHECK(report_of(test::fin()).non_manifold_edges == 1);
+  }
+  SECTION("separate fans at a point") {
+    const auto result = to_half_edge_mesh(test::bow_tie());
+    REQUIRE_FALSE(result);
+    CHECK_THAT(result.error().message,
+               Catch::Contains("1 point where separate fans of faces meet (point 0)"));
+  }
+  SECTION("faces that disagree in orientation") {
+    IndexedFaceSet set = test::tetrahedron();
+    std::swap(set.corners[0], set.corners[1]);
+    const ConsolidateReport report = report_of(set);
+    CHECK(report.misoriented_edges == 3);
+    CHECK_THAT(report.defects,
+               Catch::Contains("3 edges whose two faces disagree in orientation (first: points 0 and 1)"));
+    CHECK_FALSE(to_half_edge_mesh(set));
+  }
+  SECTION("a Möbius strip, which no orientation serves") {
+    CHECK(report_of(test::mobius(9)).misoriented_edges == 1);
+    CHECK_FALSE(to_half_edge_mesh(test::mobius(9)));
+  }
+  SECTION("a face that repeats a point") {
+    IndexedFaceSet set = test::quad_cube();
+    set.corners[2] = set.corners[0];
+    const ConsolidateReport report = report_of(set);
+    CHECK(report.degenerate_faces == 1);
+    CHECK_THAT(report.defects, Catch::StartsWith("1 degenerate face (face 0)"));
+    CHECK_FALSE(to_half_edge_mesh(set));
+  }
+  SECTION("a face of two corners") {
+    IndexedFaceSet set = test::quad_cube();
+    set.corners.insert(set.corners.end(), {0, 1});
+    set.face_offsets.push_back(26);
+    CHECK(report_of(set).degenerate_faces == 1);
+  }
+}
+
+TEST_CASE("isolated points and boundaries are counted, not refused") {
+  IndexedFaceSet set = test::grid(3, 2);
+  set.points.resize(set.points.size() + 4, Vec3(0.0f));
+  const auto result = consolidate(set);
+  REQUIRE(result);
+  CHECK(result->report.isolated_points == 4);
+  CHECK(result->report.boundary_edges == 10);
+  CHECK(result->report.edges == 23);
+  set.corners.insert(set.corners.end(), {0, 0, 1});
+  CHECK(report_of(set).isolated_points == 4);
+}
+
+TEST_CASE("an empty mesh and a point cloud consolidate into meshes without faces") {
+  const auto nothing = consolidate(IndexedFaceSet{});
+  REQUIRE(nothing);
+  CHECK(validate(nothing->mesh));
+  CHECK(nothing->mesh.face_count() == 0);
+  IndexedFaceSet cloud;
+  cloud.points.assign(5, Vec3(1.0f));
+  const auto result = consolidate(cloud);
+  REQUIRE(result);
+  CHECK(validate(result->mesh));
+  CHECK(result->report.isolated_points == 5);
+}
+
+TEST_CASE("corners that name no point and offsets that do not ascend are usage errors") {
+  IndexedFaceSet set = test::tetrahedron();
+  set.corners[4] = 4;
+  REQUIRE_FALSE(consolidate(set));
+  CHECK(consolidate(set).error().code == ErrorCode::kUsage);
+  CHECK_THAT(consolidate(set).error().message, Catch::Contains("names point 4, but there are 4 points"));
+  set = test::quad_cube();
+  set.face_offsets[3] = 4;
+  CHECK(consolidate(set).error().code == ErrorCode::kUsage);
+  set = test::tetrahedron();
+  set.corners.pop_back();
+  CHECK(consolidate(set).error().code == ErrorCode::kUsage);
+}
