@@ -260,12 +260,12 @@ class EdgeCollapses {
     // Conditions that cannot be foretold count, and do not jump.
     std::size_t live = 0;
     std::array<EdgeBatch::Ends, Queue::kBatch> ends;
-    const std::uint32_t seam = share_->territory.is_part() ? 1u << CollapseMesh::kSeamShift : 0;
+    const std::uint32_t interface = share_->territory.is_part() ? 1u << CollapseMesh::kInterfaceShift : 0;
     const CollapseMesh::Face* const faces = mesh_.faces();
     for (const std::uint32_t h : std::span(b.ids).first(b.queued)) {
       const CollapseMesh::Face& face = faces[h >> 2];
       const std::uint32_t tags = face.tags >> (h & 3u), queued = tags & 1u;
-      if ((tags & seam) != 0) [[unlikely]] {
+      if ((tags & interface) != 0) [[unlikely]] {
         if (queued != 0) share_->handed_on.push_back(h);
         continue;
       }
@@ -292,7 +292,7 @@ class EdgeCollapses {
   }
 
   [[nodiscard]] bool is_mine(std::uint32_t h) const {
-    return !share_->territory.is_part() || !mesh_.at_seam(h);
+    return !share_->territory.is_part() || !mesh_.at_interface(h);
   }
   void enqueue_now(std::uint32_t h) {
     if (is_mine(h))
@@ -475,7 +475,7 @@ class EdgeCollapses {
     erase_queued(mesh_.twin(merge.half_edge));
     const CollapseMesh::Collapsed collapsed = merger_.carry_out(state, due, merge, share_->queue.bucket());
     touched_.push_back(merge.kept);
-    if (share_->territory.is_seam()) share_->territory.merge(mesh_, merge.gone, merge.kept, merge.ring);
+    if (share_->territory.is_interface()) share_->territory.merge(mesh_, merge.gone, merge.kept, merge.ring);
     for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
     if constexpr (Placement::kMayFall == MayFall::kAll)
       refresh(merge.kept, rings.p.size() + rings.q.size() - 2);

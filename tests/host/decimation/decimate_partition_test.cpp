@@ -50,7 +50,7 @@ void check(const CollapseMesh& mesh, const std::vector<std::uint8_t>& labels) {
     if (h % 4 == 3 || !mesh.alive(h)) continue;
     const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
     if (p == mesh.apex() || q == mesh.apex()) continue;
-    REQUIRE(mesh.at_seam(h) == (((labels[p] & labels[q]) & kInner) == 0));
+    REQUIRE(mesh.at_interface(h) == (((labels[p] & labels[q]) & kInner) == 0));
   }
 }
 
@@ -61,7 +61,7 @@ bool link_condition(const CollapseMesh& mesh, std::uint32_t p, std::uint32_t q) 
          at_p.size() + at_q.size() > 7;
 }
 
-/// Parts of a surface and the seam between them, one after another on one thread.
+/// Parts of a surface and the interface between them, one after another on one thread.
 template <class Placement>
 class Parts {
  public:
@@ -72,12 +72,13 @@ class Parts {
     for (std::size_t i = 0; i <= count; ++i)
       shares_.push_back(std::make_unique<Share>(
           state_, shape.face_count(),
-          Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kSeam)));
-    for (std::uint32_t h = 0; h < mesh_.half_edge_bound(); h += 4) detail::mark_seam(labels_, mesh_.face(h));
+          Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kInterface)));
+    for (std::uint32_t h = 0; h < mesh_.half_edge_bound(); h += 4)
+      detail::tag_interface(labels_, mesh_.face(h));
     worker_.work_on(*shares_.back());
-    worker_.fill([&](CollapseMesh::Face& face) { return detail::mark_seam(labels_, face); },
+    worker_.fill([&](CollapseMesh::Face& face) { return detail::tag_interface(labels_, face); },
                  [&](std::uint8_t part, std::uint32_t h, float cost) {
-                   shares_[part == Territory::kSeam ? count : part]->queue.insert(h, cost);
+                   shares_[part == Territory::kInterface ? count : part]->queue.insert(h, cost);
                  });
   }
 
@@ -112,7 +113,7 @@ class Parts {
       while (const std::size_t count = queue.take(ids))
         for (std::size_t i = 0; i < count; ++i) {
           const std::uint32_t h = ids[i];
-          const bool inner = mesh_.alive(h) && mesh_.queued(h) && !mesh_.at_seam(h);
+          const bool inner = mesh_.alive(h) && mesh_.queued(h) && !mesh_.at_interface(h);
           foreign += inner && part + 1 < shares_.size() && (labels_[mesh_.origin(h)] & ~kInner) != part;
           std::uint32_t& bucket = lowest.try_emplace(h, MonotoneQueue::kNone).first->second;
           bucket = std::min(bucket, queue.bucket());
@@ -170,7 +171,7 @@ class Parts {
   detail::Limits limits_;
   detail::DecimationState state_{mesh_, limits_, mesh_.face_count(), mesh_.apex(), false, {}};
   std::vector<std::uint8_t> labels_;
-  std::vector<std::unique_ptr<Share>> shares_;  // the last is of the seam
+  std::vector<std::unique_ptr<Share>> shares_;  // the last is of the interface
   Worker worker_{mesh_};
   detail::EdgeBatch batch_;
   std::uint32_t last_ = 0;
@@ -207,7 +208,7 @@ using OptimalInParts = detail::PartedCollapses<detail::OptimalPlacement, detail:
 
 }  // namespace
 
-TEST_CASE("parts of a surface are compact, of one size, and stay apart through collapses on the seam",
+TEST_CASE("parts of a surface are compact, of one size, and stay apart through collapses on the interface",
           "[decimate]") {
   const std::vector<IndexedFaceSet> shapes = {test::icosphere(3), test::torus(24, 14), test::grid(20, 22)};
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
@@ -216,10 +217,10 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
     const std::size_t parts = seed < 3 ? 4 : 8;
     std::vector<std::uint8_t> labels = detail::divide(mesh, parts);
     REQUIRE(labels.size() == shape.points.size() + 1);
-    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) detail::mark_seam(labels, mesh.face(h));
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) detail::tag_interface(labels, mesh.face(h));
     check(mesh, labels);
     std::vector<std::size_t> size(parts);
-    std::size_t seam = 0;
+    std::size_t interface = 0;
     for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
       REQUIRE((labels[v] & ~kInner) < static_cast<int>(parts));
       ++size[labels[v] & ~kInner];
@@ -228,19 +229,19 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
         return r != mesh.apex() && (labels[r] & ~kInner) != (labels[v] & ~kInner);
       });
       REQUIRE(foreign == ((labels[v] & kInner) == 0));
-      seam += foreign ? 1 : 0;
+      interface += foreign ? 1 : 0;
     }
     // As even as rows of equal coordinates allow; a compact part of m vertices has about 4√m on its rim.
     const auto [least, most] = std::ranges::minmax(size);
     CHECK(3 * least > most);
-    CHECK(seam < shape.points.size() * 7 / 10);
+    CHECK(interface < shape.points.size() * 7 / 10);
 
-    Territory everywhere(labels, Territory::kSeam);
+    Territory everywhere(labels, Territory::kInterface);
     std::mt19937 random(seed);
     std::size_t collapses = 0;
     for (int i = 0; i < 3000; ++i) {
       const auto h = static_cast<std::uint32_t>(random() % mesh.half_edge_bound());
-      if (h % 4 == 3 || !mesh.alive(h) || !mesh.at_seam(h)) continue;
+      if (h % 4 == 3 || !mesh.alive(h) || !mesh.at_interface(h)) continue;
       const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
       if (p == mesh.apex() || q == mesh.apex() || !link_condition(mesh, p, q)) continue;
       const auto ring = ring_of(mesh, p);
@@ -254,7 +255,7 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
     CHECK(collapses > 50);
     check(mesh, labels);
 
-    // Parts become one again two by two, and what lay between them is no seam any more.
+    // Parts become one again two by two, and what lay between them is no interface any more.
     for (std::size_t left = parts; left > 1; left /= 2) {
       const std::vector<std::uint8_t> before = labels;
       std::vector<std::uint32_t> faces;
@@ -312,21 +313,22 @@ TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimat
   CHECK(wrong == 0);
 }
 
-TEST_CASE("each half of an edge knows whether it is at the seam before parts are at work", "[decimate]") {
+TEST_CASE("each half of an edge knows whether it is at the interface before parts are at work",
+          "[decimate]") {
   for (const IndexedFaceSet& shape : {test::grid(20, 22), test::torus(24, 14)}) {
     InParts all(shape, shape.face_count() / 4, 0);
     const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
     OptimalInParts collapses(all.state);
     collapses.fill();
     check(all.mesh, labels);
-    std::size_t seam = 0;
+    std::size_t interface = 0;
     for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h)
-      seam += h % 4 != 3 && all.mesh.at_seam(h) ? 1 : 0;
-    CHECK(seam > 100);
+      interface += h % 4 != 3 && all.mesh.at_interface(h) ? 1 : 0;
+    CHECK(interface > 100);
   }
 }
 
-TEST_CASE("what has gone before a surface is divided is on no seam", "[decimate]") {
+TEST_CASE("what has gone before a surface is divided is on no interface", "[decimate]") {
   InParts all(test::grid(60, 22), 1, 300);
   all.state.stretch_faces = 1 << 20;
   detail::sweep_if_far(all.state);

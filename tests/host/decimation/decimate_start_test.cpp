@@ -50,7 +50,7 @@ double dot(const DVec3& a, const DVec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Faces of different groups have a seam between them.
+/// Faces of different groups have a interface between them.
 std::uint32_t group_of(std::uint32_t face) {
   return face / 4 % 3;
 }
@@ -81,10 +81,10 @@ class Sums {
       if (other != faces.end()) {
         const DVec3& beyond = other->second.area;
         const double cosine = dot(area, beyond) / std::sqrt(dot(area, area) * dot(beyond, beyond));
-        const bool crease = cosine < weights.crease_cosine, seam = face.group != other->second.group;
-        weight = std::max(crease ? weights.crease : 0, seam ? weights.seam : 0);
+        const bool crease = cosine < weights.crease_cosine, interface = face.group != other->second.group;
+        weight = std::max(crease ? weights.crease : 0, interface ? weights.interface : 0);
         creases += crease ? 1 : 0;
-        seams_in_creases += crease && seam ? 1 : 0;
+        seams_in_creases += crease && interface ? 1 : 0;
       }
       for (const std::uint32_t v : {ends.first, ends.second})
         add(v, cross(edge, area), weight * dot(edge, edge));

@@ -119,7 +119,7 @@ void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<c
     if (((owner(a) ^ owner(b)) | (owner(b) ^ owner(c))) == 0) continue;
     for (const std::uint32_t v : {a, b, c}) labels[v] &= static_cast<std::uint8_t>(~Territory::kInner);
   }
-  for (const std::uint32_t f : faces) mark_seam(labels, mesh.face(4 * f));
+  for (const std::uint32_t f : faces) tag_interface(labels, mesh.face(4 * f));
 }
 
 }  // namespace vkmesh::detail

@@ -25,9 +25,9 @@
 namespace vkmesh::detail {
 
 /// Edge collapses, the cheapest first. A large surface is divided in parts: in rounds, each part does by
-/// itself what costs no more than the round's limit, and then one thread does what lies on the seam between
-/// them. What happens depends on the surface, and not on how many threads there are. With attributes or
-/// criteria a surface is one part.
+/// itself what costs no more than the round's limit, and then one thread does what lies on the interface
+/// between them. What happens depends on the surface, and not on how many threads there are. With attributes
+/// or criteria a surface is one part.
 template <class Placement, class Queue, bool kAttributes>
 class PartedCollapses {
  public:
@@ -42,7 +42,7 @@ class PartedCollapses {
         parts_.push_back(
             std::make_unique<Part>(state, edges / count, Territory(labels_, static_cast<std::uint8_t>(i))));
     }
-    rest_ = count > 1 ? std::make_unique<Share>(state, edges / 16, Territory(labels_, Territory::kSeam))
+    rest_ = count > 1 ? std::make_unique<Share>(state, edges / 16, Territory(labels_, Territory::kInterface))
                       : std::make_unique<Share>(state, edges);
   }
 
@@ -54,12 +54,12 @@ class PartedCollapses {
       rest_->queue.start();
       return;
     }
-    const auto mark = [&](CollapseMesh::Face& face) { return mark_seam(labels_, face); };
+    const auto mark = [&](CollapseMesh::Face& face) { return tag_interface(labels_, face); };
     for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
       if (CollapseMesh::Face& ghost = mesh.face(static_cast<std::uint32_t>(g)); ghost.alive()) mark(ghost);
-    std::array<Queue*, Territory::kSeam + 1> queues{};
+    std::array<Queue*, Territory::kInterface + 1> queues{};
     for (std::size_t i = 0; i < parts_.size(); ++i) queues[i] = &parts_[i]->share.queue;
-    queues[Territory::kSeam] = &rest_->queue;
+    queues[Territory::kInterface] = &rest_->queue;
     mine().fill(mark, [&](std::uint8_t part, std::uint32_t h, float cost) { queues[part]->fill(h, cost); });
   }
 
@@ -163,7 +163,7 @@ class PartedCollapses {
     const std::size_t few = std::max(state_.part_faces / 16, 4 * parts_.size());
     return state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;
   }
-  /// Half as many parts, with less seam between them.
+  /// Half as many parts, with less interface between them.
   void join_halves_of_parts() {
     CollapseMesh& mesh = state_.mesh;
     if (faces_left_.empty()) {
@@ -179,14 +179,14 @@ class PartedCollapses {
     for (std::size_t i = 0; i < halves.size() / 2; ++i)
       parts_.push_back(std::make_unique<Part>(state_, halves[2 * i]->share.queue.size(),
                                               Territory(labels_, static_cast<std::uint8_t>(i))));
-    Queue seam = std::exchange(rest_->queue, Queue(mesh.half_edge_bound(), rest_->queue.size()));
+    Queue interface = std::exchange(rest_->queue, Queue(mesh.half_edge_bound(), rest_->queue.size()));
     const auto home = [&](std::uint32_t h) -> Queue* {
       if (!mesh.queued(h)) return nullptr;
-      return mesh.at_seam(h) ? &rest_->queue
-                             : &parts_[labels_[mesh.origin(h)] & ~Territory::kInner]->share.queue;
+      return mesh.at_interface(h) ? &rest_->queue
+                                  : &parts_[labels_[mesh.origin(h)] & ~Territory::kInner]->share.queue;
     };
     for (const auto& half : halves) half->share.queue.hand_out(home);
-    seam.hand_out(home);
+    interface.hand_out(home);
   }
   void unite() {
     std::size_t edges = 0;

@@ -97,7 +97,7 @@ class CollapseMesh {
   struct alignas(32) Face {
     std::array<std::uint32_t, 3> origin;
     /// Bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked; bit 8 + i: an end of it is
-    /// on the seam between parts. A face that is gone has none.
+    /// on the interface between parts. A face that is gone has none.
     std::uint32_t tags;
     std::array<std::uint32_t, 3> twin;
     std::uint32_t source;  // its number in the input
@@ -105,7 +105,7 @@ class CollapseMesh {
     [[nodiscard]] bool alive() const { return origin[0] != kInvalid; }
   };
 
-  static constexpr unsigned kSeamShift = 8;  // of the tags
+  static constexpr unsigned kInterfaceShift = 8;  // of the tags
 
   /// Where the half-edge of a face after that at a corner starts, and the one before it. From a table it is
   /// fewer instructions than next() and previous(), and a longer wait.
@@ -209,15 +209,15 @@ class CollapseMesh {
     return has_g + has_t;
   }
 
-  /// Whether an end of the edge is on the seam between parts.
-  [[nodiscard]] bool at_seam(std::uint32_t h) const {
-    return (face(h).tags >> kSeamShift >> (h & 3u) & 1u) != 0;
+  /// Whether an end of the edge is on the interface between parts.
+  [[nodiscard]] bool at_interface(std::uint32_t h) const {
+    return (face(h).tags >> kInterfaceShift >> (h & 3u) & 1u) != 0;
   }
   /// Of a vertex that is not isolated. O(valence).
-  void set_on_seam(std::uint32_t v) {
+  void tag_interface_at(std::uint32_t v) {
     std::uint32_t h = vertices[v].leading;
     do {
-      face(h).tags |= (1u << (h & 3u) | 1u << kPreviousCorner[h & 3u]) << kSeamShift;
+      face(h).tags |= (1u << (h & 3u) | 1u << kPreviousCorner[h & 3u]) << kInterfaceShift;
       h = around_vertex(h);
     } while (h != vertices[v].leading);
   }
