@@ -513,7 +513,7 @@ void fuzz_as(Bytes& bytes) {
   const BasicDecimated<Point> whole = run(input, options);
   if constexpr (std::is_same_v<Point, Vec3>) {
     const auto parted =
-        detail::decimate({input.points, input.corners}, options, detail::CollapseOrder::kParted);
+        detail::decimate({input.points, input.corners}, options, detail::CollapseOrder::kPartitioned);
     require(parted.has_value(), "decimated in parts");
     require_sound(*parted, input, options);
     // Swept at first if the target is far.
@@ -521,7 +521,8 @@ void fuzz_as(Bytes& bytes) {
     free.keep_history = false;
     free.max_error.reset();
     free.max_relative_error.reset();
-    const auto swept = detail::decimate({input.points, input.corners}, free, detail::CollapseOrder::kParted);
+    const auto swept =
+        detail::decimate({input.points, input.corners}, free, detail::CollapseOrder::kPartitioned);
     require(swept.has_value(), "swept");
     require_sound(*swept, input, free);
     if (options.operation == DecimateOperation::kHalfEdgeCollapse && options.attributes.empty() &&

@@ -304,8 +304,8 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         options.boundary == DecimateBoundary::kKept};
   state.mean_weight = mean_weight_of(mesh);
-  if (order == CollapseOrder::kParted) {
-    state.part_faces = 32;
+  if (order == CollapseOrder::kPartitioned) {
+    state.partition_faces = 32;
     state.stretch_faces = 512;
   }
   if (attributes && options.keep_history) attributes->keep_changes();

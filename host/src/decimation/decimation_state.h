@@ -33,7 +33,7 @@ struct Event {
   std::array<float, 3> position;
   bool moved;  // from where the input has it
   std::array<std::uint32_t, 2> faces;
-  std::uint32_t bucket = 0;  // of its cost, where parts are decimated side by side
+  std::uint32_t bucket = 0;  // of its cost, where partitions are decimated side by side
 };
 
 struct Outcome {
@@ -46,7 +46,7 @@ struct Outcome {
   std::vector<Event> events;
   std::vector<DecimationChanges::Face> changed_faces;  // by removals, if events are kept
 
-  /// What parts have done meanwhile by collapses of edges.
+  /// What partitions have done meanwhile by collapses of edges.
   Outcome& operator+=(const Outcome& more) {
     error2 = std::max(error2, more.error2);
     attribute_error2 = std::max(attribute_error2, more.attribute_error2);
@@ -66,32 +66,32 @@ struct DecimationState {
   AttributeQuadrics* attributes = nullptr;  // none
   Criteria* criteria = nullptr;             // none
   bool boundary_kept = false;
-  double mean_weight = 0;                            // of all vertices at first
-  std::size_t part_faces = std::size_t{1} << 16;     // of parts that are decimated side by side
-  std::size_t stretch_faces = std::size_t{3} << 16;  // of stretches that are swept so
+  double mean_weight = 0;                              // of all vertices at first
+  std::size_t partition_faces = std::size_t{1} << 16;  // of partitions that are decimated side by side
+  std::size_t stretch_faces = std::size_t{3} << 16;    // of stretches that are swept so
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };
 
-/// What happens in one of several parts of a surface, while threads work side by side.
-class PartState {
+/// What happens in one of several partitions of a surface, while threads work side by side.
+class PartitionState {
  public:
-  explicit PartState(const DecimationState& all)
+  explicit PartitionState(const DecimationState& all)
       : limits_(all.limits),
         state{all.mesh,          limits_,        0, 0, all.keep_events, {}, nullptr, nullptr,
               all.boundary_kept, all.mean_weight} {
     limits_.faces = 1;  // a removal takes two
     limits_.vertices = 0;
   }
-  PartState(const PartState&) = delete;
-  PartState& operator=(const PartState&) = delete;
+  PartitionState(const PartitionState&) = delete;
+  PartitionState& operator=(const PartitionState&) = delete;
 
   /// It may take so many away.
   void start(std::size_t faces, std::size_t vertices) {
     state.faces = faces_ = faces;
     state.vertices = vertices_ = vertices;
   }
-  /// When no part is at work.
+  /// When no partition is at work.
   void report_to(DecimationState& all) {
     all.faces -= faces_ - state.faces;
     all.vertices -= vertices_ - state.vertices;

@@ -13,10 +13,11 @@ namespace vkmesh::detail {
 template <class Placement, bool kAttributes>
 Result<Outcome> run_collapses(DecimationState& state, bool exact, const Progress& progress) {
   if (state.criteria != nullptr && state.criteria->ranks())
-    return run_removals<PartedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state, progress);
+    return run_removals<PartitionedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state,
+                                                                                              progress);
   if constexpr (Placement::kMayFall != MayFall::kAll)
-    if (!exact) return run_removals<PartedCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
-  return run_removals<PartedCollapses<Placement, ExactQueue, kAttributes>>(state, progress);
+    if (!exact) return run_removals<PartitionedCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
+  return run_removals<PartitionedCollapses<Placement, ExactQueue, kAttributes>>(state, progress);
 }
 
 template <bool kAttributes>

@@ -40,14 +40,14 @@ namespace vkmesh::detail {
 template <class Placement, class Queue, bool kAttributes = false>
 class EdgeCollapses {
  public:
-  /// What a thread works on by itself: all edges, or those of a part of the surface.
+  /// What a thread works on by itself: all edges, or those of a partition of the surface.
   struct Share {
     /// `edges`: about how many the queue will hold.
-    Share(DecimationState& all, std::size_t edges, Territory where = {})
-        : state(all), territory(where), queue(all.mesh.half_edge_bound(), edges) {}
+    Share(DecimationState& all, std::size_t edges, Partition where = {})
+        : state(all), partition(where), queue(all.mesh.half_edge_bound(), edges) {}
 
     DecimationState& state;
-    Territory territory;
+    Partition partition;
     Queue queue;
     std::uint32_t last = MonotoneQueue::kLast;  // bucket that is served
     /// Half-edges of edges that others must see to, and vertices whose parked edges they must.
@@ -56,9 +56,9 @@ class EdgeCollapses {
     float cost_of_distance = 0;
     bool only_at_boundary = false;  // or at locked vertices
 
-    /// `all`: what has been done, in all parts. Once few faces are left points must not move far for what the
-    /// planes say that costs. It depends on nothing but how many are left, and changes when they are half as
-    /// many: what waits is not put off again and again.
+    /// `all`: what has been done, in all partitions. Once few faces are left points must not move far for
+    /// what the planes say that costs. It depends on nothing but how many are left, and changes when they are
+    /// half as many: what waits is not put off again and again.
     void watch(const DecimationState& all) {
       const std::size_t share = std::bit_floor(all.mesh.face_count() / std::max<std::size_t>(all.faces, 1));
       const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
@@ -149,10 +149,10 @@ class EdgeCollapses {
 
   /// Takes the next of the queue and does what is legal and due. False when nothing is left.
   bool step() {
-    if (!share_->territory.is_part()) share_->watch(share_->state);
+    if (!share_->partition.is_bounded()) share_->watch(share_->state);
     std::rotate(pending_.begin(), pending_.begin() + 1, pending_.end());
     auto& [now, next, later, last] = pending_;
-    if (Queue::kBatch > 1 && (share_->territory.is_part() || share_->state.faces > kInCache)) {
+    if (Queue::kBatch > 1 && (share_->partition.is_bounded() || share_->state.faces > kInCache)) {
       take(*last);
       evaluate(*next);
     } else {
@@ -260,7 +260,7 @@ class EdgeCollapses {
     // Conditions that cannot be foretold count, and do not jump.
     std::size_t live = 0;
     std::array<EdgeBatch::Ends, Queue::kBatch> ends;
-    const std::uint32_t interface = share_->territory.is_part() ? 1u << CollapseMesh::kInterfaceShift : 0;
+    const std::uint32_t interface = share_->partition.is_bounded() ? 1u << CollapseMesh::kInterfaceShift : 0;
     const CollapseMesh::Face* const faces = mesh_.faces();
     for (const std::uint32_t h : std::span(b.ids).first(b.queued)) {
       const CollapseMesh::Face& face = faces[h >> 2];
@@ -292,7 +292,7 @@ class EdgeCollapses {
   }
 
   [[nodiscard]] bool is_mine(std::uint32_t h) const {
-    return !share_->territory.is_part() || !mesh_.at_interface(h);
+    return !share_->partition.is_bounded() || !mesh_.at_interface(h);
   }
   void enqueue_now(std::uint32_t h) {
     if (is_mine(h))
@@ -475,7 +475,7 @@ class EdgeCollapses {
     erase_queued(mesh_.twin(merge.half_edge));
     const CollapseMesh::Collapsed collapsed = merger_.carry_out(state, due, merge, share_->queue.bucket());
     touched_.push_back(merge.kept);
-    if (share_->territory.is_interface()) share_->territory.merge(mesh_, merge.gone, merge.kept, merge.ring);
+    if (share_->partition.is_interface()) share_->partition.merge(mesh_, merge.gone, merge.kept, merge.ring);
     for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
     if constexpr (Placement::kMayFall == MayFall::kAll)
       refresh(merge.kept, rings.p.size() + rings.q.size() - 2);
@@ -612,7 +612,7 @@ class EdgeCollapses {
       for (const EdgeRings::Ring& ring : {rings.p, rings.q})
         for (const std::uint32_t r : ring)
           if (vertices_[r].has(CollapseVertex::kHasParked)) {
-            if (!share_->territory.is_part() || share_->territory.holds(r))
+            if (!share_->partition.is_bounded() || share_->partition.holds(r))
               revive_at(r);
             else
               share_->to_revive.push_back(r);

@@ -13,7 +13,7 @@
 
 namespace vkmesh::detail {
 
-/// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartedCollapses does,
+/// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartitionedCollapses does,
 /// fill(), step(), kStep, hold(), which tells what holds the candidates that are left, and kMaySweep: whether
 /// the cheapest need not go first while much is to go.
 template <class Removals>

@@ -250,7 +250,7 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
     detail::Limits limits = any_angle();
     limits.faces = mesh.face_count() / divisor;
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    state.part_faces = 128;
+    state.partition_faces = 128;
     state.stretch_faces = 1024;
     change(state, limits);
     detail::sweep_if_far(state);
@@ -275,7 +275,7 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
   CHECK(left_of(grid, 10000, as_is) < far);
   CHECK(left_of(grid, 8, [](auto& state, auto&) { state.keep_events = true; }) == all);
   CHECK(left_of(grid, 8, [](auto&, auto& limits) { limits.error2 = 1; }) == all);
-  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.part_faces = state.mesh.face_count(); }) == all);
+  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.partition_faces = state.mesh.face_count(); }) == all);
   // It stops where it is told to.
   for (const std::size_t rest : {std::size_t{1}, all * 4 / 5, all - 10}) {
     CollapseMesh mesh = test::collapse_mesh_of(test::fitted(grid));
@@ -298,7 +298,7 @@ TEST_CASE("stretches are swept side by side as one after another", "[decimate]")
     detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
     const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    state.part_faces = 1024;
+    state.partition_faces = 1024;
     state.stretch_faces = 2048;
     tbb::task_arena(threads).execute([&] { detail::sweep_if_far(state); });
     CHECK(state.faces < mesh.face_count() * 2 / 3);
@@ -329,7 +329,8 @@ TEST_CASE("decimation: what is far from its target is swept at first, on any num
     const auto on = [&](int threads, const DecimateOptions& options) {
       tbb::task_arena arena(threads);
       return arena.execute([&] {
-        auto result = detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+        auto result =
+            detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kPartitioned);
         REQUIRE(result);
         REQUIRE(validate(result->mesh));
         return std::move(*result);

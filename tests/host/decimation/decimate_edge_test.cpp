@@ -158,7 +158,7 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
     if (way.operation == DecimateOperation::kVertexRemoval) continue;  // histories tell no triangulation
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
       const bool parted = seed >= 4;
-      const auto order = parted ? detail::CollapseOrder::kParted : detail::CollapseOrder::kFast;
+      const auto order = parted ? detail::CollapseOrder::kPartitioned : detail::CollapseOrder::kFast;
       const std::vector<IndexedFaceSet> shapes =
           parted ? std::vector{test::icosphere(2), test::torus(14, 11), test::grid(14, 13),
                                test::both(test::icosphere(1), test::torus(12, 9))}
@@ -219,7 +219,7 @@ TEST_CASE("decimation: parts side by side do the same on any number of threads",
         tbb::task_arena arena(threads);
         return arena.execute([&] {
           auto result =
-              detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+              detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kPartitioned);
           REQUIRE(result);
           REQUIRE(validate(result->mesh));
           return std::move(*result);

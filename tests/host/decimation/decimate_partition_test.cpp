@@ -30,16 +30,16 @@ namespace vkmesh {
 namespace {
 
 using detail::CollapseMesh;
-using detail::Territory;
+using detail::Partition;
 using test::ring_of;
 
-constexpr std::uint8_t kInner = Territory::kInner;
+constexpr std::uint8_t kInner = Partition::kInner;
 
 CollapseMesh mesh_of(const IndexedFaceSet& set) {
   return test::collapse_mesh_of(test::fitted(set));
 }
 
-/// What makes it safe that threads work on the parts, by definition.
+/// What makes it safe that threads work on the partitions, by definition.
 void check(const CollapseMesh& mesh, const std::vector<std::uint8_t>& labels) {
   for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
     if (!mesh.vertices[v].alive() || (labels[v] & kInner) == 0) continue;
@@ -61,24 +61,24 @@ bool link_condition(const CollapseMesh& mesh, std::uint32_t p, std::uint32_t q) 
          at_p.size() + at_q.size() > 7;
 }
 
-/// Parts of a surface and the interface between them, one after another on one thread.
+/// Partitions of a surface and the interface between them, one after another on one thread.
 template <class Placement>
-class Parts {
+class Partitions {
  public:
-  explicit Parts(const IndexedFaceSet& shape, std::size_t count) : mesh_(mesh_of(shape)) {
+  explicit Partitions(const IndexedFaceSet& shape, std::size_t count) : mesh_(mesh_of(shape)) {
     detail::sum_quadrics(mesh_, {});
     limits_.cos_deviation = std::cos(1.3f);
-    labels_ = detail::divide(mesh_, count);
+    labels_ = detail::partition_kd(mesh_, count);
     for (std::size_t i = 0; i <= count; ++i)
       shares_.push_back(std::make_unique<Share>(
           state_, shape.face_count(),
-          Territory(labels_, i < count ? static_cast<std::uint8_t>(i) : Territory::kInterface)));
+          Partition(labels_, i < count ? static_cast<std::uint8_t>(i) : Partition::kInterface)));
     for (std::uint32_t h = 0; h < mesh_.half_edge_bound(); h += 4)
       detail::tag_interface(labels_, mesh_.face(h));
     worker_.work_on(*shares_.back());
     worker_.fill([&](CollapseMesh::Face& face) { return detail::tag_interface(labels_, face); },
-                 [&](std::uint8_t part, std::uint32_t h, float cost) {
-                   shares_[part == Territory::kInterface ? count : part]->queue.insert(h, cost);
+                 [&](std::uint8_t partition, std::uint32_t h, float cost) {
+                   shares_[partition == Partition::kInterface ? count : partition]->queue.insert(h, cost);
                  });
   }
 
@@ -94,9 +94,9 @@ class Parts {
       if (share == shares_.back())
         for (const auto& other : shares_) worker_.take_over(*other);
       limits_.faces = state_.faces - std::min(most, state_.faces);
-      const std::vector<Known> before = known_outside(share->territory);
+      const std::vector<Known> before = known_outside(share->partition);
       worker_.run(last_);
-      CHECK(known_outside(share->territory) == before);
+      CHECK(known_outside(share->partition) == before);
     }
     return true;
   }
@@ -107,14 +107,15 @@ class Parts {
   void check_queues() {
     std::map<std::uint32_t, std::uint32_t> lowest;
     std::size_t foreign = 0;
-    for (std::size_t part = 0; part < shares_.size(); ++part) {
-      detail::LazyQueue queue = shares_[part]->queue;
+    for (std::size_t partition = 0; partition < shares_.size(); ++partition) {
+      detail::LazyQueue queue = shares_[partition]->queue;
       std::array<std::uint32_t, 64> ids;
       while (const std::size_t count = queue.take(ids))
         for (std::size_t i = 0; i < count; ++i) {
           const std::uint32_t h = ids[i];
           const bool inner = mesh_.alive(h) && mesh_.queued(h) && !mesh_.at_interface(h);
-          foreign += inner && part + 1 < shares_.size() && (labels_[mesh_.origin(h)] & ~kInner) != part;
+          foreign +=
+              inner && partition + 1 < shares_.size() && (labels_[mesh_.origin(h)] & ~kInner) != partition;
           std::uint32_t& bucket = lowest.try_emplace(h, MonotoneQueue::kNone).first->second;
           bucket = std::min(bucket, queue.bucket());
         }
@@ -155,14 +156,14 @@ class Parts {
   using Worker = detail::EdgeCollapses<Placement, detail::LazyQueue>;
   using Share = typename Worker::Share;
 
-  /// What a part may not change where it does not belong.
+  /// What a partition may not change where it does not belong.
   using Known = std::pair<std::array<float, 4>, bool>;
-  [[nodiscard]] std::vector<Known> known_outside(const Territory& territory) const {
+  [[nodiscard]] std::vector<Known> known_outside(const Partition& partition) const {
     std::vector<Known> known;
-    for (std::uint32_t v = 0; v < mesh_.apex() && territory.is_part(); ++v) {
+    for (std::uint32_t v = 0; v < mesh_.apex() && partition.is_bounded(); ++v) {
       const detail::CollapseVertex& vertex = mesh_.vertices[v];
       const auto& [x, y, z] = vertex.position;
-      if (!territory.holds(v)) known.push_back({{x, y, z, vertex.weight}, vertex.alive()});
+      if (!partition.holds(v)) known.push_back({{x, y, z, vertex.weight}, vertex.alive()});
     }
     return known;
   }
@@ -180,49 +181,51 @@ class Parts {
 template <class Placement>
 void check_rounds(const IndexedFaceSet& shape) {
   for (const std::size_t most : {shape.face_count(), std::size_t{20}}) {
-    Parts<Placement> parts(shape, 4);
-    parts.check_queues();
-    while (parts.round(most)) {
-      parts.check_queues();
-      parts.check_parked();
+    Partitions<Placement> partitions(shape, 4);
+    partitions.check_queues();
+    while (partitions.round(most)) {
+      partitions.check_queues();
+      partitions.check_parked();
     }
-    CHECK(parts.collapses() > shape.points.size() / 2);
+    CHECK(partitions.collapses() > shape.points.size() / 2);
   }
 }
 
-/// Decimation in parts as decimate() does it, of a mesh to be looked into.
-struct InParts {
-  InParts(const IndexedFaceSet& shape, std::size_t part_faces, std::size_t to_faces) : mesh(mesh_of(shape)) {
+/// Decimation in partitions as decimate() does it, of a mesh to be looked into.
+struct Partitioned {
+  Partitioned(const IndexedFaceSet& shape, std::size_t partition_faces, std::size_t to_faces)
+      : mesh(mesh_of(shape)) {
     mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());
     detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
     limits.cos_deviation = std::cos(1.3f);
     limits.faces = to_faces;
-    state.part_faces = part_faces;
+    state.partition_faces = partition_faces;
   }
 
   CollapseMesh mesh;
   detail::Limits limits;
   detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
 };
-using OptimalInParts = detail::PartedCollapses<detail::OptimalPlacement, detail::LazyQueue, false>;
+using OptimalPartitioned = detail::PartitionedCollapses<detail::OptimalPlacement, detail::LazyQueue, false>;
 
 }  // namespace
 
-TEST_CASE("parts of a surface are compact, of one size, and stay apart through collapses on the interface",
-          "[decimate]") {
+TEST_CASE(
+    "partitions of a surface are compact, of one size, and stay apart through collapses on the interface",
+    "[decimate]") {
   const std::vector<IndexedFaceSet> shapes = {test::icosphere(3), test::torus(24, 14), test::grid(20, 22)};
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
     const IndexedFaceSet& shape = shapes[seed % shapes.size()];
     CollapseMesh mesh = mesh_of(shape);
-    const std::size_t parts = seed < 3 ? 4 : 8;
-    std::vector<std::uint8_t> labels = detail::divide(mesh, parts);
+    const std::size_t partitions = seed < 3 ? 4 : 8;
+    std::vector<std::uint8_t> labels = detail::partition_kd(mesh, partitions);
     REQUIRE(labels.size() == shape.points.size() + 1);
     for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) detail::tag_interface(labels, mesh.face(h));
     check(mesh, labels);
-    std::vector<std::size_t> size(parts);
+    std::vector<std::size_t> size(partitions);
     std::size_t interface = 0;
     for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
-      REQUIRE((labels[v] & ~kInner) < static_cast<int>(parts));
+      REQUIRE((labels[v] & ~kInner) < static_cast<int>(partitions));
       ++size[labels[v] & ~kInner];
       const auto ring = ring_of(mesh, v);
       const bool foreign = std::ranges::any_of(ring, [&](std::uint32_t r) {
@@ -231,12 +234,12 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
       REQUIRE(foreign == ((labels[v] & kInner) == 0));
       interface += foreign ? 1 : 0;
     }
-    // As even as rows of equal coordinates allow; a compact part of m vertices has about 4√m on its rim.
+    // As even as rows of equal coordinates allow; a compact partition of m vertices has about 4√m on its rim.
     const auto [least, most] = std::ranges::minmax(size);
     CHECK(3 * least > most);
     CHECK(interface < shape.points.size() * 7 / 10);
 
-    Territory everywhere(labels, Territory::kInterface);
+    Partition everywhere(labels, Partition::kInterface);
     std::mt19937 random(seed);
     std::size_t collapses = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -255,13 +258,13 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
     CHECK(collapses > 50);
     check(mesh, labels);
 
-    // Parts become one again two by two, and what lay between them is no interface any more.
-    for (std::size_t left = parts; left > 1; left /= 2) {
+    // Partitions become one again two by two, and what lay between them is no interface any more.
+    for (std::size_t left = partitions; left > 1; left /= 2) {
       const std::vector<std::uint8_t> before = labels;
       std::vector<std::uint32_t> faces;
       for (std::uint32_t f = 0; f < mesh.half_edge_bound() / 4; ++f)
         if (mesh.alive(4 * f)) faces.push_back(f);
-      detail::join_halves(mesh, labels, faces);
+      detail::merge_pairs(mesh, labels, faces);
       check(mesh, labels);
       for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
         if (!mesh.vertices[v].alive()) continue;
@@ -276,7 +279,7 @@ TEST_CASE("parts of a surface are compact, of one size, and stay apart through c
   }
 }
 
-TEST_CASE("no edge is lost or comes late between the parts of a surface", "[decimate]") {
+TEST_CASE("no edge is lost or comes late between the partitions of a surface", "[decimate]") {
   for (IndexedFaceSet shape : {test::icosphere(3), test::torus(30, 16), test::grid(20, 22)}) {
     test::jitter(shape, 0.05f, 1);
     check_rounds<detail::OptimalPlacement>(shape);
@@ -285,7 +288,7 @@ TEST_CASE("no edge is lost or comes late between the parts of a surface", "[deci
 }
 
 TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimate]") {
-  InParts all(test::grid(61, 80), 1, 0);  // of some blocks of faces
+  Partitioned all(test::grid(61, 80), 1, 0);  // of some blocks of faces
   detail::EdgeCollapses<detail::OptimalPlacement, detail::LazyQueue> worker(all.mesh);
   decltype(worker)::Share share(all.state, 0);
   worker.work_on(share);
@@ -313,12 +316,12 @@ TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimat
   CHECK(wrong == 0);
 }
 
-TEST_CASE("each half of an edge knows whether it is at the interface before parts are at work",
+TEST_CASE("each half of an edge knows whether it is at the interface before partitions are at work",
           "[decimate]") {
   for (const IndexedFaceSet& shape : {test::grid(20, 22), test::torus(24, 14)}) {
-    InParts all(shape, shape.face_count() / 4, 0);
-    const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
-    OptimalInParts collapses(all.state);
+    Partitioned all(shape, shape.face_count() / 4, 0);
+    const std::vector<std::uint8_t> labels = detail::partition_kd(all.mesh, 4);
+    OptimalPartitioned collapses(all.state);
     collapses.fill();
     check(all.mesh, labels);
     std::size_t interface = 0;
@@ -329,32 +332,33 @@ TEST_CASE("each half of an edge knows whether it is at the interface before part
 }
 
 TEST_CASE("what has gone before a surface is divided is on no interface", "[decimate]") {
-  InParts all(test::grid(60, 22), 1, 300);
+  Partitioned all(test::grid(60, 22), 1, 300);
   all.state.stretch_faces = 1 << 20;
   detail::sweep_if_far(all.state);
   REQUIRE(all.state.faces < all.mesh.face_count() * 3 / 4);
-  const std::vector<std::uint8_t> labels = detail::divide(all.mesh, 4);
+  const std::vector<std::uint8_t> labels = detail::partition_kd(all.mesh, 4);
   std::array<std::size_t, 4> sizes{};
   for (std::uint32_t v = 0; v < all.mesh.apex(); ++v) {
     if (!all.mesh.vertices[v].alive()) continue;
-    const std::uint8_t part = labels[v] & ~kInner;
-    ++sizes.at(part);
+    const std::uint8_t partition = labels[v] & ~kInner;
+    ++sizes.at(partition);
     const auto ring = ring_of(all.mesh, v);
     const bool inner = std::ranges::all_of(
-        ring, [&](std::uint32_t r) { return r == all.mesh.apex() || (labels[r] & ~kInner) == part; });
+        ring, [&](std::uint32_t r) { return r == all.mesh.apex() || (labels[r] & ~kInner) == partition; });
     CHECK(((labels[v] & kInner) != 0) == inner);
   }
   CHECK(3 * std::ranges::min(sizes) > std::ranges::max(sizes));
 }
 
-TEST_CASE("what was pruned is of no part", "[decimate]") {
+TEST_CASE("what was pruned is of no partition", "[decimate]") {
   const IndexedFaceSet shape = test::both(test::icosphere(3), test::grid(5, 4), {3.0f, 0.0f, 0.0f});
   IndexedFaceSet small = shape;
   for (std::size_t v = shape.points.size() - 30; v < shape.points.size(); ++v) small.points[v] *= 0.1f;
   DecimateOptions options;
   options.prune_relative_size = 0.25;
   options.target_ratio = 0.1;
-  const auto done = detail::decimate({small.points, small.corners}, options, detail::CollapseOrder::kParted);
+  const auto done =
+      detail::decimate({small.points, small.corners}, options, detail::CollapseOrder::kPartitioned);
   REQUIRE(done);
   REQUIRE(validate(done->mesh));
   CHECK(done->pruned_components == 1);
@@ -364,14 +368,14 @@ TEST_CASE("what was pruned is of no part", "[decimate]") {
     CHECK((done->vertex_map[v] == kInvalid) == (v + 30 >= small.points.size()));
 }
 
-TEST_CASE("parts that become one again lose nothing", "[decimate]") {
+TEST_CASE("partitions that become one again lose nothing", "[decimate]") {
   IndexedFaceSet half = test::icosphere(4);
   test::jitter(half, 0.05f, 1);
   const IndexedFaceSet shape = test::both(half, half, {3.0f, 0.0f, 0.0f});
   // So near the target that there is no round before.
-  const std::size_t part_faces = shape.face_count() / 2, to_faces = shape.face_count() - 300;
-  InParts all(shape, part_faces, to_faces);
-  OptimalInParts collapses(all.state);
+  const std::size_t partition_faces = shape.face_count() / 2, to_faces = shape.face_count() - 300;
+  Partitioned all(shape, partition_faces, to_faces);
+  OptimalPartitioned collapses(all.state);
   collapses.fill();
   while (!all.state.reached()) REQUIRE(collapses.step());
   std::array<std::size_t, 2> gone{};
@@ -381,17 +385,18 @@ TEST_CASE("parts that become one again lose nothing", "[decimate]") {
   CHECK(std::min(gone[0], gone[1]) > 60);
 }
 
-TEST_CASE("a history of parts has at any time done as much in each", "[decimate]") {
+TEST_CASE("a history of partitions has at any time done as much in each", "[decimate]") {
   IndexedFaceSet half = test::icosphere(4);
   test::jitter(half, 0.05f, 1);
   const IndexedFaceSet mesh = test::both(half, half, {3.0f, 0.0f, 0.0f});
   for (DecimateOptions options : test::ways()) {
     if (options.operation == DecimateOperation::kVertexRemoval ||
         options.placement == CollapsePlacement::kMidpoint)
-      continue;  // of one part
+      continue;  // of one partition
     options.keep_history = true;
     options.target_ratio = 0.2;
-    const auto done = detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kParted);
+    const auto done =
+        detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kPartitioned);
     REQUIRE(done);
     std::ptrdiff_t ahead = 0, most = 0;
     for (const Collapse<Vec3>& c : done->history) {

@@ -325,7 +325,7 @@ TEST_CASE("decimation: what is nearly the cheapest does as well as the cheapest"
       CHECK(fast < 1.03 * exact);
       if (operation == DecimateOperation::kVertexRemoval) continue;  // of one part
       // Most of these parts is seam; of large ones it is little.
-      const double parted = mean(detail::CollapseOrder::kParted);
+      const double parted = mean(detail::CollapseOrder::kPartitioned);
       INFO(parted / exact);
       CHECK(parted < 1.08 * exact);
     }

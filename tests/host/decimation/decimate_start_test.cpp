@@ -29,7 +29,7 @@ namespace {
 
 using detail::CollapseMesh;
 using detail::CollapseVertex;
-using detail::Territory;
+using detail::Partition;
 using test::collapse_mesh_of;
 
 /// The same with other numbers for the points.
@@ -161,7 +161,7 @@ TEST_CASE("decimation: quadrics start as the sums over the planes of faces, boun
   }
 }
 
-TEST_CASE("decimation: a vertex where threads part the vertices has all its faces", "[decimate]") {
+TEST_CASE("decimation: a vertex where threads partition the vertices has all its faces", "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   IndexedFaceSet mesh = test::grid(46, 40);
   test::jitter(mesh, 0.2f, 1);
@@ -178,15 +178,16 @@ TEST_CASE("decimation: a vertex where threads part the vertices has all its face
   }
 }
 
-TEST_CASE("decimation: parts of a surface too large to be counted are of one size, however it is numbered",
-          "[decimate]") {
+TEST_CASE(
+    "decimation: partitions of a surface too large to be counted are of one size, however it is numbered",
+    "[decimate]") {
   IndexedFaceSet mesh = test::grid(360, 250);
   for (Vec3& p : mesh.points) p = p / 360.0f - Vec3(0.5f);
   for (const bool shuffled : {false, true}) {
     CollapseMesh built = collapse_mesh_of(shuffled ? shuffle(mesh, 1) : mesh);
-    const std::vector<std::uint8_t> labels = detail::divide(built, 8);
+    const std::vector<std::uint8_t> labels = detail::partition_kd(built, 8);
     std::vector<std::size_t> size(8);
-    for (std::uint32_t v = 0; v < built.apex(); ++v) ++size.at(labels[v] & ~Territory::kInner);
+    for (std::uint32_t v = 0; v < built.apex(); ++v) ++size.at(labels[v] & ~Partition::kInner);
     const auto [least, most] = std::ranges::minmax(size);
     CHECK(10 * most < 11 * least);
   }

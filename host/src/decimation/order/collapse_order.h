@@ -6,9 +6,9 @@
 namespace vkmesh::detail {
 
 enum class CollapseOrder {
-  kFast,   ///< What `decimate` does.
-  kExact,  ///< The cheapest edge at any time, from a heap: many times slower, to compare with.
-  kParted  ///< As kFast does with large surfaces, in parts so small that any surface has several.
+  kFast,        ///< What `decimate` does.
+  kExact,       ///< The cheapest edge at any time, from a heap: many times slower, to compare with.
+  kPartitioned  ///< As kFast does with large surfaces, in partitions so small that any surface has several.
 };
 
 [[nodiscard]] Result<Decimated> decimate(const TriangleSurface& surface, const DecimateOptions& options,

@@ -154,7 +154,7 @@ void sweep_if_far(DecimationState& state) {
   constexpr double kFar = 8, kFarther = 16;
   const CollapseMesh& mesh = state.mesh;
   const double times = times_the_target(state);
-  if (mesh.face_count() < 2 * state.part_faces || times < kFar || state.criteria != nullptr ||
+  if (mesh.face_count() < 2 * state.partition_faces || times < kFar || state.criteria != nullptr ||
       state.attributes != nullptr || state.keep_events ||
       state.limits.error2 < std::numeric_limits<double>::infinity())
     return;
@@ -172,17 +172,18 @@ void sweep_if_far(DecimationState& state) {
   const auto side_by_side = [&](std::size_t stretches, auto&& stretch_of, auto&& sweep) {
     const double faces = static_cast<double>(state.faces - state.limits.faces),
                  vertices = static_cast<double>(state.vertices - state.limits.vertices);
-    std::vector<std::unique_ptr<PartState>> parts(stretches);
-    for (auto& part : parts) part = std::make_unique<PartState>(state);
+    std::vector<std::unique_ptr<PartitionState>> partitions(stretches);
+    for (auto& partition : partitions) partition = std::make_unique<PartitionState>(state);
     parallel_ranges(stretches, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Stretch stretch = stretch_of(i);
         const double share = static_cast<double>(stretch.end - stretch.begin) / static_cast<double>(n);
-        parts[i]->start(static_cast<std::size_t>(share * faces), static_cast<std::size_t>(share * vertices));
-        sweep(i, VertexSweep(parts[i]->state, stretch, most));
+        partitions[i]->start(static_cast<std::size_t>(share * faces),
+                             static_cast<std::size_t>(share * vertices));
+        sweep(i, VertexSweep(partitions[i]->state, stretch, most));
       }
     });
-    for (const auto& part : parts) part->report_to(state);
+    for (const auto& partition : partitions) partition->report_to(state);
   };
   side_by_side(
       count,

@@ -24,30 +24,30 @@ float along(const Position& position, std::size_t axis) {
 
 constexpr std::size_t kGrain = std::size_t{1} << 14;
 
-/// Where parts are cut in halves: part i of a level by cut i of that level, into parts 2i and 2i + 1 of the
-/// next.
-struct Cut {
+/// Where partitions are split in halves: partition i of a level by split i of that level, into partitions 2i
+/// and 2i + 1 of the next.
+struct Split {
   std::size_t axis = 0;
   float first = 0;  // cell of the upper half
 };
-using Cuts = std::vector<std::vector<Cut>>;
+using Splits = std::vector<std::vector<Split>>;
 
-std::size_t half_of(const Cut& cut, const Position& position) {
-  return along(position, cut.axis) >= cut.first ? 1 : 0;
+std::size_t half_of(const Split& split, const Position& position) {
+  return along(position, split.axis) >= split.first ? 1 : 0;
 }
 
-/// Cuts each part in two halves of as many positions where it is longest (J. L. Bentley, "Multidimensional
-/// binary search trees used for associative searching", 1975), all of one level at once.
-Cuts cut_in_halves(std::span<const Position> positions, std::size_t parts) {
-  Cuts cuts;
-  std::vector<std::uint8_t> part(positions.size(), 0);
-  for (std::size_t level = 1; level < parts; level *= 2) {
+/// Splits each partition in two halves of as many positions where it is longest (J. L. Bentley,
+/// "Multidimensional binary search trees used for associative searching", 1975), all of one level at once.
+Splits split_at_medians(std::span<const Position> positions, std::size_t partitions) {
+  Splits splits;
+  std::vector<std::uint8_t> partition(positions.size(), 0);
+  for (std::size_t level = 1; level < partitions; level *= 2) {
     std::vector<std::array<std::array<std::uint32_t, kCells>, 3>> counts(level);
     for (std::size_t i = 0; i < positions.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        ++counts[part[i]][k]
+        ++counts[partition[i]][k]
                 [static_cast<std::size_t>(std::clamp(along(positions[i], k), 0.0f, kCells - 1.0f))];
-    std::vector<Cut>& here = cuts.emplace_back(level);
+    std::vector<Split>& here = splits.emplace_back(level);
     for (std::size_t i = 0; i < level; ++i) {
       std::size_t longest = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -66,58 +66,59 @@ Cuts cut_in_halves(std::span<const Position> positions, std::size_t parts) {
       }
     }
     for (std::size_t i = 0; i < positions.size(); ++i)
-      part[i] = static_cast<std::uint8_t>(2 * part[i] + half_of(here[part[i]], positions[i]));
+      partition[i] = static_cast<std::uint8_t>(2 * partition[i] + half_of(here[partition[i]], positions[i]));
   }
-  return cuts;
+  return splits;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts) {
+std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partitions) {
   const std::size_t n = mesh.apex();
   constexpr std::size_t kSample = std::size_t{1} << 15;  // vertices are enough to know where the middle is
   const std::size_t stride = std::max<std::size_t>(n / kSample, 1);
   std::vector<Position> sample;
   for (std::size_t v = 0; v < n; v += stride)
     if (mesh.vertices[v].alive()) sample.push_back(mesh.vertices[v].position);
-  const Cuts cuts = cut_in_halves(sample, parts);
+  const Splits splits = split_at_medians(sample, partitions);
 
-  std::vector<std::uint8_t> part(n + 1, 0);
+  std::vector<std::uint8_t> partition(n + 1, 0);
   parallel_ranges(n, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const CollapseVertex& vertex = mesh.vertices[v];
       prefetch_stream(&vertex);
       std::size_t at = 0;
-      for (const std::vector<Cut>& level : cuts) at = 2 * at + half_of(level[at], vertex.position);
-      part[v] = static_cast<std::uint8_t>(at);
+      for (const std::vector<Split>& level : splits) at = 2 * at + half_of(level[at], vertex.position);
+      partition[v] = static_cast<std::uint8_t>(at);
     }
   });
-  std::vector<std::uint8_t> labels(part.size());
-  for (std::size_t v = 0; v < part.size(); ++v) labels[v] = part[v] | Territory::kInner;
+  std::vector<std::uint8_t> labels(partition.size());
+  for (std::size_t v = 0; v < partition.size(); ++v) labels[v] = partition[v] | Partition::kInner;
   mesh.parts().for_each([&](const VertexParts::Part& range) {
     range.for_each_face([&](std::uint32_t f) {
       // Whether it is alive nothing foretells: no jump, and one that is gone has no first corner.
       const CollapseMesh::Face& face = mesh.face(4 * f);
       prefetch_stream(&face);
       const std::uint32_t a = std::min(face.origin[0], mesh.apex()), b = face.origin[1], c = face.origin[2];
-      const auto differ = static_cast<std::uint32_t>((part[a] ^ part[b]) | (part[b] ^ part[c]));
+      const auto differ =
+          static_cast<std::uint32_t>((partition[a] ^ partition[b]) | (partition[b] ^ partition[c]));
       if ((differ & (0u - static_cast<std::uint32_t>(face.alive()))) == 0) return;
       for (const std::uint32_t v : {a, b, c})
-        if (range.has(v)) labels[v] = part[v];
+        if (range.has(v)) labels[v] = partition[v];
     });
   });
   return labels;
 }
 
-void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces) {
+void merge_pairs(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces) {
   for (std::uint8_t& label : labels)
-    label = static_cast<std::uint8_t>((label & ~Territory::kInner) >> 1) | Territory::kInner;
-  const auto owner = [&](std::uint32_t v) { return labels[v] & ~Territory::kInner; };
+    label = static_cast<std::uint8_t>((label & ~Partition::kInner) >> 1) | Partition::kInner;
+  const auto owner = [&](std::uint32_t v) { return labels[v] & ~Partition::kInner; };
   for (const std::uint32_t f : faces) {
     if (mesh.is_ghost(4 * f)) continue;
     const auto& [a, b, c] = mesh.face(4 * f).origin;
     if (((owner(a) ^ owner(b)) | (owner(b) ^ owner(c))) == 0) continue;
-    for (const std::uint32_t v : {a, b, c}) labels[v] &= static_cast<std::uint8_t>(~Territory::kInner);
+    for (const std::uint32_t v : {a, b, c}) labels[v] &= static_cast<std::uint8_t>(~Partition::kInner);
   }
   for (const std::uint32_t f : faces) tag_interface(labels, mesh.face(4 * f));
 }

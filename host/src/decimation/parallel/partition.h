@@ -1,4 +1,4 @@
-// Parts of a surface that threads decimate side by side.
+// Partitions of a surface that threads decimate side by side.
 #pragma once
 
 #include <array>
@@ -10,25 +10,26 @@
 
 namespace vkmesh::detail {
 
-/// Which vertices one of several may remove, all of whose neighbours are of the same part: faces at such
+/// Which vertices one of several may remove, all of whose neighbours are of the same partition: faces at such
 /// vertices, and the vertices of these faces, nobody else reads or writes. All others are on the interface
-/// between parts, and once there stay there: what the interface's collapses leave next to another part has
-/// joined it.
-class Territory {
+/// between partitions, and once there stay there: what the interface's collapses leave next to another
+/// partition has joined it.
+class Partition {
  public:
   static constexpr std::uint8_t kInner = 0x80, kInterface = 0x7f;
 
-  /// Everywhere, and there are no parts.
-  Territory() = default;
-  /// `labels`, for each vertex: its part, and kInner unless it is on the interface. Of the part kInterface
-  /// everything is, while nobody else is at work.
-  Territory(std::vector<std::uint8_t>& labels, std::uint8_t part) : labels_(labels.data()), part_(part) {}
+  /// Everywhere, and there are no partitions.
+  Partition() = default;
+  /// `labels`, for each vertex: its partition, and kInner unless it is on the interface. Of the partition
+  /// kInterface everything is, while nobody else is at work.
+  Partition(std::vector<std::uint8_t>& labels, std::uint8_t partition)
+      : labels_(labels.data()), partition_(partition) {}
 
-  [[nodiscard]] bool is_part() const { return part_ != kInterface; }
-  /// Of a part.
-  [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (part_ | kInner); }
+  [[nodiscard]] bool is_bounded() const { return partition_ != kInterface; }
+  /// Of a partition.
+  [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (partition_ | kInner); }
 
-  [[nodiscard]] bool is_interface() const { return labels_ != nullptr && !is_part(); }
+  [[nodiscard]] bool is_interface() const { return labels_ != nullptr && !is_bounded(); }
   /// Of the interface: a vertex has absorbed another, which had this ring.
   void merge(CollapseMesh& mesh, std::uint32_t gone, std::uint32_t kept,
              std::span<const std::uint32_t> ring) {
@@ -45,19 +46,19 @@ class Territory {
 
  private:
   std::uint8_t* labels_ = nullptr;
-  std::uint8_t part_ = kInterface;
+  std::uint8_t partition_ = kInterface;
 };
 
-/// Labels of vertices, for `parts` compact parts of about as many vertices each; a power of two below
-/// kInterface. O(n log parts).
-[[nodiscard]] std::vector<std::uint8_t> divide(CollapseMesh& mesh, std::size_t parts);
+/// Labels of vertices, for `partitions` compact partitions of about as many vertices each; a power of two
+/// below kInterface. O(n log partitions).
+[[nodiscard]] std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partitions);
 
-/// What divide has made of parts: 2 i and 2 i + 1 become part i again. `faces`: all that are left, ghosts
-/// too, which are marked anew. O(vertices + faces), of which the vertices take a byte each.
-void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces);
+/// What partition_kd has made of partitions: 2 i and 2 i + 1 become partition i again. `faces`: all that are
+/// left, ghosts too, which are marked anew. O(vertices + faces), of which the vertices take a byte each.
+void merge_pairs(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces);
 
-/// Tells a face which of its edges are at the interface, and returns for each who sees to it: a part, or
-/// Territory::kInterface. No part may be at work before all faces know.
+/// Tells a face which of its edges are at the interface, and returns for each who sees to it: a partition, or
+/// Partition::kInterface. No partition may be at work before all faces know.
 [[gnu::always_inline]] inline std::array<std::uint8_t, 3> tag_interface(std::span<const std::uint8_t> labels,
                                                                         CollapseMesh::Face& face) {
   const std::array<std::uint8_t, 3> at = {labels[face.origin[0]], labels[face.origin[1]],
@@ -65,9 +66,9 @@ void join_halves(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<c
   std::array<std::uint8_t, 3> owner;
   std::uint32_t interface = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
-    const bool inner = (at[i] & at[i < 2 ? i + 1 : 0] & Territory::kInner) != 0;
+    const bool inner = (at[i] & at[i < 2 ? i + 1 : 0] & Partition::kInner) != 0;
     interface |= (inner ? 0u : 1u) << i;
-    owner[i] = inner ? at[i] & ~Territory::kInner : Territory::kInterface;
+    owner[i] = inner ? at[i] & ~Partition::kInner : Partition::kInterface;
   }
   face.tags =
       (face.tags & ~(7u << CollapseMesh::kInterfaceShift)) | interface << CollapseMesh::kInterfaceShift;

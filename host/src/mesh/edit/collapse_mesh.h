@@ -97,7 +97,7 @@ class CollapseMesh {
   struct alignas(32) Face {
     std::array<std::uint32_t, 3> origin;
     /// Bit i: half-edge i is queued for its edge; bit 4 + i: its edge is parked; bit 8 + i: an end of it is
-    /// on the interface between parts. A face that is gone has none.
+    /// on the interface between partitions. A face that is gone has none.
     std::uint32_t tags;
     std::array<std::uint32_t, 3> twin;
     std::uint32_t source;  // its number in the input
@@ -209,7 +209,7 @@ class CollapseMesh {
     return has_g + has_t;
   }
 
-  /// Whether an end of the edge is on the interface between parts.
+  /// Whether an end of the edge is on the interface between partitions.
   [[nodiscard]] bool at_interface(std::uint32_t h) const {
     return (face(h).tags >> kInterfaceShift >> (h & 3u) & 1u) != 0;
   }
