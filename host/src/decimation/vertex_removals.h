@@ -169,7 +169,7 @@ class VertexRemovals {
   /// those of side 1 first.
   [[nodiscard]] static std::size_t first_face([[maybe_unused]] const HoleStar& star) {
     if constexpr (kAttributes)
-      if (star.sides.parted) return star.sides.last % (star.edges - 1);
+      if (star.sides.split) return star.sides.last % (star.edges - 1);
     return 0;
   }
 
@@ -441,7 +441,7 @@ class VertexRemovals {
       if (c > b + 1) parts[left++] = {b, c};
     }
     if constexpr (kAttributes)
-      if (star.sides.parted)
+      if (star.sides.split)
         std::stable_partition(triangles.of.begin(), triangles.of.begin() + triangles.count,
                               [&](const Triangle& t) { return star.sides.of(t[2]) == 1; });
     return triangles;
@@ -610,7 +610,7 @@ class VertexRemovals {
     std::size_t a = 0, c = star.neighbours() - 1;
     bool on_curve = !star.closed;
     if constexpr (kAttributes) {
-      if (star.sides.parted) {
+      if (star.sides.split) {
         on_curve = true;
         c = star.sides.last;
       }

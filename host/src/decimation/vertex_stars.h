@@ -78,7 +78,7 @@ class HoleStars {
         continue;
       }
       if (!star.closed) put_apex_last(star);
-      if (wedges_ != nullptr) part(star);
+      if (wedges_ != nullptr) find_sides(star);
       ++first[star.neighbours() + 1];
     }
     for (std::size_t n = 1; n < first.size(); ++n) first[n] += first[n - 1];
@@ -115,7 +115,7 @@ class HoleStars {
   }
 
   /// By the seam through the vertex, if any; the first edge is then of it.
-  void part(HoleStar& star) const {
+  void find_sides(HoleStar& star) const {
     const auto is_seam = [&](std::uint32_t h) { return wedges_->is_seam(mesh_, h); };
     if (wedges_->on_seam(star.vertex))
       begin_at(star,

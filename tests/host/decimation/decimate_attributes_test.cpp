@@ -498,9 +498,9 @@ TEST_CASE("A chart of one face at the boundary is not cut off", "[decimate]") {
   DecimateOptions options = ways()[4];
   const std::vector<std::uint32_t> groups = {0, 0, 0, 1, 1, 1};
   options.corner_groups = groups;
-  const Decimated parted = run(mesh, options);
-  CHECK(parted.mesh.face_count() == 2);
-  CHECK(parted.held.seam == 2);
+  const Decimated split = run(mesh, options);
+  CHECK(split.mesh.face_count() == 2);
+  CHECK(split.held.seam == 2);
 }
 
 TEST_CASE("Vertices go in the exact order, too, and by criteria, with attributes", "[decimate]") {
@@ -842,9 +842,9 @@ TEST_CASE("What a vertex that stays has absorbed counts with the values it has",
 
 TEST_CASE("One collapse with attributes is the least squares solution", "[decimate]") {
   Textured smooth = random_sphere(7);
-  Textured parted = sphere_of_octants(2);
-  test::jitter(parted.mesh, 0.05f, 3);
-  for (const Textured* t : {&smooth, &parted}) {
+  Textured split = sphere_of_octants(2);
+  test::jitter(split.mesh, 0.05f, 3);
+  for (const Textured* t : {&smooth, &split}) {
     constexpr double kWeight = 0.3;
     DecimateOptions options;
     options.keep_history = true;

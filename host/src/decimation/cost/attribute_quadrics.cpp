@@ -321,7 +321,7 @@ void AttributeQuadrics::set(HoleAttributes& holes, std::size_t lane, std::span<c
   for (std::size_t k = 0; k < 3; ++k) holes.b[k][lane] = left.b[k];
   holes.c[lane] = left.c;
   holes.last[lane] = static_cast<std::int32_t>(sides.last);
-  holes.parted[lane] = sides.parted ? 1 : 0;
+  holes.split[lane] = sides.split ? 1 : 0;
   for (std::size_t side = 0; side < sides.count(); ++side) {
     const std::uint32_t own = wedges_.on_side(edges, sides, side);
     holes.weight[side][lane] = weight_[own];

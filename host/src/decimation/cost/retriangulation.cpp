@@ -331,7 +331,7 @@ void add_shapes(const HoleBatch& batch, Work& w) {
 // Where the new edges of boundaries and seams end, which begin at the first neighbour.
 void find_curves(const HoleBatch& batch, const HoleAttributes& attributes, Vectors& to, Lanes& is_none) {
   for (std::size_t l = 0; l < kLanes; ++l) {
-    is_none[l] = attributes.parted[l] != 0 ? 0.0f : batch.closed[l];
+    is_none[l] = attributes.split[l] != 0 ? 0.0f : batch.closed[l];
     for (std::size_t k = 0; k < 3; ++k)
       to[k][l] = batch.ring[static_cast<std::size_t>(attributes.last[l])][k][l];
   }
@@ -370,7 +370,7 @@ void find_heirs(const HoleBatch& batch, const Curve& curve, const Work& w, HoleA
   for (std::size_t l = 0; l < kLanes; ++l) {
     const auto all = [&](std::size_t i) {
       const auto& [one, other] = attributes.heir[i];
-      return one[l] + (attributes.parted[l] != 0 ? other[l] : 0.0f);
+      return one[l] + (attributes.split[l] != 0 ? other[l] : 0.0f);
     };
     const float t = w.toward[l];
     const auto last = static_cast<std::size_t>(attributes.last[l]);

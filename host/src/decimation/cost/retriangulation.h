@@ -102,7 +102,7 @@ struct HoleAttributes {
   alignas(64) std::array<Lanes, 3> b{};
   alignas(64) Lanes c{};
   /// The sides of a seam through v, as SeamSides has them. New edges across it must be barred.
-  std::array<std::int32_t, HoleBatch::kLanes> last{}, parted{};
+  std::array<std::int32_t, HoleBatch::kLanes> last{}, split{};
 
   // Result.
 

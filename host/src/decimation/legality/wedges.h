@@ -16,15 +16,15 @@ namespace vkmesh::detail {
 /// no seam passes, all stand on side 0.
 struct SeamSides {
   std::size_t last;
-  bool parted;
+  bool split;
 
-  [[nodiscard]] std::size_t count() const { return parted ? 2 : 1; }
+  [[nodiscard]] std::size_t count() const { return split ? 2 : 1; }
   [[nodiscard]] bool has(std::size_t side, std::size_t i) const {
     return side == 0 ? i <= last : i == 0 || i >= last;
   }
   /// Whether the edge of neighbours a < b has these on both sides.
   [[nodiscard]] bool cross(std::size_t a, std::size_t b) const {
-    return parted && a > 0 && a < last && b > last;
+    return split && a > 0 && a < last && b > last;
   }
   /// Of a triangle no edge of which crosses; `c` is its last corner.
   [[nodiscard]] std::size_t of(std::size_t c) const { return c <= last ? 0 : 1; }
@@ -34,8 +34,9 @@ struct SeamSides {
 /// those that follow each other around it with the same attributes. An edge whose sides are of different
 /// wedges at one of its ends, or both, is a seam.
 ///
-/// Where two seams pass through a vertex inside the surface and part its corners into two wedges, it may move
-/// and go, along the seam. Any other vertex of a seam (where seams end, meet or reach the boundary) is fixed.
+/// Where two seams pass through a vertex inside the surface and split its corners into two wedges, it may
+/// move and go, along the seam. Any other vertex of a seam (where seams end, meet or reach the boundary) is
+/// fixed.
 class Wedges {
  public:
   /// `same(c, d)`: whether two corners of the input, at one vertex, have the same attributes. Locks the
@@ -44,7 +45,7 @@ class Wedges {
   Wedges(CollapseMesh& mesh, std::size_t vertex_count, Same&& same)
       : of_(4 * mesh.face_count(), kInvalid), marks_(vertex_count, 0) {
     for (std::uint32_t v = 0; v < vertex_count; ++v)
-      if (mesh.vertices[v].alive()) part(mesh, v, same);
+      if (mesh.vertices[v].alive()) find_wedges(mesh, v, same);
     for (std::uint32_t v = 0; v < vertex_count; ++v)
       if (mesh.vertices[v].alive()) mark(mesh, v);
   }
@@ -151,7 +152,7 @@ class Wedges {
                                  const SeamSides& sides) const {
     const auto across = [&](std::size_t i) { return CollapseMesh::next(edges[i]); };
     const std::size_t last = sides.last;
-    if (!sides.parted) {
+    if (!sides.split) {
       const bool is_ear = edges.size() == 3 && mesh.is_ghost(edges[2]);
       return !is_ear || !is_seam(mesh, across(0));
     }
@@ -204,7 +205,7 @@ class Wedges {
   }
 
   template <class Same>
-  void part(const CollapseMesh& mesh, std::uint32_t v, Same&& same) {
+  void find_wedges(const CollapseMesh& mesh, std::uint32_t v, Same&& same) {
     const auto begins = [&](std::uint32_t h) {
       const std::uint32_t b = before(mesh, h);
       return mesh.is_ghost(h) || mesh.is_ghost(b) || !same(source_corner(mesh, h), source_corner(mesh, b));
