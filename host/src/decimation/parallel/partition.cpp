@@ -94,7 +94,7 @@ std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partition
   });
   std::vector<std::uint8_t> labels(partition.size());
   for (std::size_t v = 0; v < partition.size(); ++v) labels[v] = partition[v] | Partition::kInner;
-  mesh.parts().for_each([&](const VertexParts::Part& range) {
+  mesh.vertex_ranges().for_each([&](const VertexRanges::Range& range) {
     range.for_each_face([&](std::uint32_t f) {
       // Whether it is alive nothing foretells: no jump, and one that is gone has no first corner.
       const CollapseMesh::Face& face = mesh.face(4 * f);

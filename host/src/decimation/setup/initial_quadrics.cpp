@@ -52,12 +52,12 @@ VKMESH_CLONES void find_planes(FaceBatch& batch) {
   }
 }
 
-void add_faces(CollapseMesh& mesh, const VertexParts::Part& part) {
+void add_faces(CollapseMesh& mesh, const VertexRanges::Range& range) {
   constexpr std::uint32_t kAhead = 16;
   const auto last = static_cast<std::uint32_t>(mesh.face_count()) - 1;
   CollapseVertex* const vertices = mesh.vertices.data();
   FaceBatch batch;
-  part.for_each_range([&](std::uint32_t begin, std::uint32_t end) {
+  range.for_each_range([&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t first = begin; first < end; first += FaceBatch::kSize) {
       const std::uint32_t count = std::min<std::uint32_t>(end - first, FaceBatch::kSize);
       for (std::uint32_t i = 0; i < count; i += 4) {
@@ -84,7 +84,7 @@ void add_faces(CollapseMesh& mesh, const VertexParts::Part& part) {
                      &batch.planes[i + 3][half]});
       for (std::uint32_t i = 0; i < count; ++i)
         for (const std::uint32_t v : mesh.face(4 * (first + i)).origin)
-          if (part.has(v)) add_words(vertices[v], batch.planes[i]);
+          if (range.has(v)) add_words(vertices[v], batch.planes[i]);
     }
   });
 }
@@ -114,9 +114,9 @@ float constraint(const CollapseMesh& mesh, std::uint32_t h, const ConstraintWeig
 }
 
 /// The plane that stands on a half-edge, perpendicular to its face.
-void add_constraint(CollapseMesh& mesh, const VertexParts::Part& part, std::uint32_t h, float weight) {
+void add_constraint(CollapseMesh& mesh, const VertexRanges::Range& part, std::uint32_t h, float weight) {
   const std::uint32_t from = mesh.origin(h), to = mesh.target(h);
-  if (!(weight > 0) || (!part.has(from) && !part.has(to))) return;
+  if (!(weight > 0) || (!range.has(from) && !range.has(to))) return;
   const AreaVector area = area_of(mesh, mesh.face(h));
   const auto &a = mesh.vertices[from].position, &b = mesh.vertices[to].position;
   const std::array<float, 3> e = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
@@ -128,19 +128,19 @@ void add_constraint(CollapseMesh& mesh, const VertexParts::Part& part, std::uint
   const PlaneWords words = words_of((e[1] * n[2] - e[2] * n[1]) / root, (e[2] * n[0] - e[0] * n[2]) / root,
                                     (e[0] * n[1] - e[1] * n[0]) / root, weight * squared);
   for (const std::uint32_t v : {from, to})
-    if (part.has(v)) add_words(mesh.vertices[v], words);
+    if (range.has(v)) add_words(mesh.vertices[v], words);
 }
 
 }  // namespace
 
 void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights) {
-  mesh.parts().for_each([&](const VertexParts::Part& part) {
+  mesh.vertex_ranges().for_each([&](const VertexRanges::Range& range) {
     add_faces(mesh, part);
     if (weights.boundary > 0)
       for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
         add_constraint(mesh, part, mesh.twin(static_cast<std::uint32_t>(g)), weights.boundary);
     if (weights.crease > 0 || weights.seam > 0)
-      part.for_each_face([&](std::uint32_t f) {
+      range.for_each_face([&](std::uint32_t f) {
         for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
           if (!mesh.is_ghost(mesh.twin(h))) add_constraint(mesh, part, h, constraint(mesh, h, weights));
       });

@@ -160,11 +160,11 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
   auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
   for (std::size_t i = 0; i < kTail; ++i) leaving[corners + i] = 0;
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
-  parts_.for_each([&](const VertexParts::Part& part) {
-    part.for_each_face([&](std::uint32_t f) {
+  ranges_.for_each([&](const VertexRanges::Range& range) {
+    range.for_each_face([&](std::uint32_t f) {
       prefetch_stream(&faces_[f]);
       for (const std::uint32_t v : faces_[f].origin)
-        if (part.has(v)) ++ends[v];
+        if (range.has(v)) ++ends[v];
     });
   });
   std::size_t most = 0;
@@ -175,12 +175,12 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
     end = sum;
     sum += count;
   }
-  parts_.for_each([&](const VertexParts::Part& part) {
-    part.for_each_face([&](std::uint32_t f) {
+  ranges_.for_each([&](const VertexRanges::Range& range) {
+    range.for_each_face([&](std::uint32_t f) {
       prefetch_stream(&faces_[f]);
       for (std::uint32_t i = 0; i < 3; ++i) {
         const std::uint32_t v = faces_[f].origin[i];
-        if (part.has(v)) leaving[ends[v]++] = 4 * f + i;
+        if (range.has(v)) leaving[ends[v]++] = 4 * f + i;
       }
     });
   });

@@ -126,8 +126,8 @@ class CollapseMesh {
     apex_ = static_cast<std::uint32_t>(vertex_count);
     faces_ = LargeArray<Face>(face_count + face_count / 16 + 64);
     std::atomic<bool> simple = true, in_range = true;
-    parts_ = VertexParts(vertex_count, face_count, [&](std::size_t begin, std::size_t end) {
-      VertexParts::Range range;
+    ranges_ = VertexRanges(vertex_count, face_count, [&](std::size_t begin, std::size_t end) {
+      VertexRanges::Extent range;
       bool all_simple = true;
       for (std::size_t f = begin; f < end; ++f) {
         prefetch_stream(&faces_[f]);
@@ -146,7 +146,7 @@ class CollapseMesh {
   }
 
   /// For loops over the faces that write to their corners.
-  [[nodiscard]] const VertexParts& parts() const { return parts_; }
+  [[nodiscard]] const VertexRanges& vertex_ranges() const { return ranges_; }
   [[nodiscard]] std::uint32_t apex() const { return apex_; }
   [[nodiscard]] std::size_t face_count() const { return face_count_; }
   /// All half-edges are less, those of ghosts included.
@@ -292,7 +292,7 @@ class CollapseMesh {
   bool close(std::span<const std::uint32_t> boundary);
 
   LargeArray<Face> faces_;
-  VertexParts parts_;
+  VertexRanges ranges_;
   std::size_t face_count_ = 0;
   std::size_t ghosts_ = 0;
   std::uint32_t apex_ = 0;

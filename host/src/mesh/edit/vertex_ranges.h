@@ -17,10 +17,10 @@ namespace vkmesh::detail {
 /// A thread takes a range of vertices and all the blocks of faces with a corner in it, in order, so that each
 /// vertex is written by one thread, and in the order of its faces: the bytes do not depend on how many
 /// threads there are. Where neighbours stand near each other few faces are looked at twice.
-class VertexParts {
+class VertexRanges {
  public:
-  VertexParts() = default;
-  struct Range {
+  VertexRanges() = default;
+  struct Extent {
     std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
 
     void add(std::uint32_t v) {
@@ -32,32 +32,32 @@ class VertexParts {
   /// range_of(begin, end), called once for each block of faces on any threads, tells among which vertices
   /// their corners are.
   template <class RangeOf>
-  VertexParts(std::size_t vertex_count, std::size_t face_count, RangeOf&& range_of)
+  VertexRanges(std::size_t vertex_count, std::size_t face_count, RangeOf&& range_of)
       : vertex_count_(vertex_count), face_count_(face_count), blocks_((face_count + kBlock - 1) / kBlock) {
-    parts_ = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    range_count_ = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     parallel_ranges(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b)
         blocks_[b] = range_of(kBlock * b, std::min(kBlock * (b + 1), face_count));
     });
   }
 
-  /// Calls body(part) once for each part, on any threads.
+  /// Calls body(range) once for each range, on any threads.
   template <class Body>
   void for_each(Body&& body) const {
-    parallel_ranges(parts_, 1, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(range_count_, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        body(Part{*this, static_cast<std::uint32_t>(vertex_count_ * i / parts_),
-                  static_cast<std::uint32_t>(vertex_count_ * (i + 1) / parts_)});
+        body(Range{*this, static_cast<std::uint32_t>(vertex_count_ * i / range_count_),
+                   static_cast<std::uint32_t>(vertex_count_ * (i + 1) / range_count_)});
     });
   }
 
-  struct Part {
-    const VertexParts& all;
+  struct Range {
+    const VertexRanges& all;
     std::uint32_t begin, end;
 
     [[nodiscard]] bool has(std::uint32_t v) const { return v - begin < end - begin; }
     /// Calls f(begin, end) in ascending order for ranges of faces among which are all that have a corner in
-    /// the part.
+    /// the range.
     template <class F>
     void for_each_range(F&& f) const {
       for (std::size_t b = 0; b < all.blocks_.size(); ++b) {
@@ -77,8 +77,8 @@ class VertexParts {
 
  private:
   static constexpr std::size_t kBlock = 2048;
-  std::size_t vertex_count_ = 0, face_count_ = 0, parts_ = 1;
-  std::vector<Range> blocks_;
+  std::size_t vertex_count_ = 0, face_count_ = 0, range_count_ = 1;
+  std::vector<Extent> blocks_;
 };
 
 }  // namespace vkmesh::detail
