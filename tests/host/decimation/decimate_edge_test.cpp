@@ -157,10 +157,10 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
   for (const DecimateOptions& way : ways()) {
     if (way.operation == DecimateOperation::kVertexRemoval) continue;  // histories tell no triangulation
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
-      const bool parted = seed >= 4;
-      const auto order = parted ? detail::CollapseOrder::kPartitioned : detail::CollapseOrder::kFast;
+      const bool partitioned = seed >= 4;
+      const auto order = partitioned ? detail::CollapseOrder::kPartitioned : detail::CollapseOrder::kFast;
       const std::vector<IndexedFaceSet> shapes =
-          parted ? std::vector{test::icosphere(2), test::torus(14, 11), test::grid(14, 13),
+          partitioned ? std::vector{test::icosphere(2), test::torus(14, 11), test::grid(14, 13),
                                test::both(test::icosphere(1), test::torus(12, 9))}
                  : std::vector{test::icosphere(2), test::torus(9, 5), test::grid(6, 5), test::cylinder(4, 7),
                                test::both(test::cube(), test::torus(5, 4))};
@@ -204,13 +204,13 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
   }
 }
 
-TEST_CASE("decimation: parts side by side do the same on any number of threads", "[decimate]") {
+TEST_CASE("decimation: partitions side by side do the same on any number of threads", "[decimate]") {
   // More threads than there may be cores.
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
   test::jitter(mesh, 0.05f, 1);
   for (const DecimateOptions& way : ways()) {
-    if (way.operation == DecimateOperation::kVertexRemoval) continue;  // of one part
+    if (way.operation == DecimateOperation::kVertexRemoval) continue;  // of one partition
     for (const double ratio : {0.5, 0.1, 0.0}) {
       DecimateOptions options = way;
       options.target_ratio = ratio;

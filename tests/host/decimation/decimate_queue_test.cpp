@@ -323,11 +323,11 @@ TEST_CASE("decimation: what is nearly the cheapest does as well as the cheapest"
       const double fast = mean(detail::CollapseOrder::kFast), exact = mean(detail::CollapseOrder::kExact);
       INFO(fast / exact);
       CHECK(fast < 1.03 * exact);
-      if (operation == DecimateOperation::kVertexRemoval) continue;  // of one part
-      // Most of these parts is seam; of large ones it is little.
-      const double parted = mean(detail::CollapseOrder::kPartitioned);
-      INFO(parted / exact);
-      CHECK(parted < 1.08 * exact);
+      if (operation == DecimateOperation::kVertexRemoval) continue;  // of one partition
+      // Most of these partitions is interface; of large ones it is little.
+      const double partitioned = mean(detail::CollapseOrder::kPartitioned);
+      INFO(partitioned / exact);
+      CHECK(partitioned < 1.08 * exact);
     }
 }
 

@@ -61,7 +61,7 @@ inline detail::CollapseMesh collapse_mesh_of(const IndexedFaceSet& set) {
   return mesh;
 }
 
-/// Fitted into the cube that parts are cut in.
+/// Fitted into the cube that partitions are split in.
 inline IndexedFaceSet fitted(IndexedFaceSet set) {
   float size = 0;
   for (const Vec3& p : set.points) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

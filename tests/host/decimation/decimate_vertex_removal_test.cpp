@@ -266,7 +266,7 @@ void put(const Star& star, const Attributes& attributes, std::size_t lane, HoleB
          HoleAttributes& holes) {
   put(star, lane, batch);
   put_quadric(attributes.left, lane, holes);
-  holes.parted[lane] = star.seam > 0 ? 1 : 0;
+  holes.split[lane] = star.seam > 0 ? 1 : 0;
   const std::size_t last = star.seam > 0 ? star.seam : star.size() - 1;
   holes.last[lane] = static_cast<std::int32_t>(last);
   for (std::size_t b = 1; b < star.size(); ++b)
@@ -384,7 +384,7 @@ TEST_CASE("decimation: attributes take part in which triangulation is the best, 
   HoleAttributes holes;
   constexpr std::array<double, 2> kCosts = {1, 0.3};
   for (const double cost : kCosts) holes.components.emplace_back().cost = static_cast<float>(cost);
-  std::size_t within = 0, boundary = 0, parted = 0, decided = 0;
+  std::size_t within = 0, boundary = 0, on_seam = 0, decided = 0;
   for (std::size_t n = 3; n <= 7; ++n) {
     const std::vector<Triangulation> all = all_triangulations(0, n - 1);
     for (int round = 0; round < (test::kSanitized ? 10 : 60); ++round) {
@@ -441,7 +441,7 @@ TEST_CASE("decimation: attributes take part in which triangulation is the best, 
         CHECK(holes.error[lane] == Approx(error_of(star, attributes[lane], found)).margin(rounding));
         CHECK(batch.error[lane] + holes.error[lane] >= least - rounding);
         CHECK(batch.error[lane] + holes.error[lane] <= least + rounding + by_length);
-        ++(star.seam > 0 ? parted : star.closed ? within : boundary);
+        ++(star.seam > 0 ? on_seam : star.closed ? within : boundary);
         if (least_without + error_of(star, attributes[lane], *plain) > 1.01 * least) ++decided;
       }
     }
@@ -449,7 +449,7 @@ TEST_CASE("decimation: attributes take part in which triangulation is the best, 
   const std::size_t enough = test::kSanitized ? 30 : 300;
   CHECK(within > enough);
   CHECK(boundary > enough);
-  CHECK(parted > enough);
+  CHECK(on_seam > enough);
   CHECK(decided > enough);
 }
 

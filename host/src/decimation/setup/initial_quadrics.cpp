@@ -114,7 +114,7 @@ float constraint(const CollapseMesh& mesh, std::uint32_t h, const ConstraintWeig
 }
 
 /// The plane that stands on a half-edge, perpendicular to its face.
-void add_constraint(CollapseMesh& mesh, const VertexRanges::Range& part, std::uint32_t h, float weight) {
+void add_constraint(CollapseMesh& mesh, const VertexRanges::Range& range, std::uint32_t h, float weight) {
   const std::uint32_t from = mesh.origin(h), to = mesh.target(h);
   if (!(weight > 0) || (!range.has(from) && !range.has(to))) return;
   const AreaVector area = area_of(mesh, mesh.face(h));
@@ -135,14 +135,14 @@ void add_constraint(CollapseMesh& mesh, const VertexRanges::Range& part, std::ui
 
 void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights) {
   mesh.vertex_ranges().for_each([&](const VertexRanges::Range& range) {
-    add_faces(mesh, part);
+    add_faces(mesh, range);
     if (weights.boundary > 0)
       for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
-        add_constraint(mesh, part, mesh.twin(static_cast<std::uint32_t>(g)), weights.boundary);
+        add_constraint(mesh, range, mesh.twin(static_cast<std::uint32_t>(g)), weights.boundary);
     if (weights.crease > 0 || weights.seam > 0)
       range.for_each_face([&](std::uint32_t f) {
         for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
-          if (!mesh.is_ghost(mesh.twin(h))) add_constraint(mesh, part, h, constraint(mesh, h, weights));
+          if (!mesh.is_ghost(mesh.twin(h))) add_constraint(mesh, range, h, constraint(mesh, h, weights));
       });
   });
 }
