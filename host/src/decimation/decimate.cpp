@@ -306,7 +306,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   state.mean_weight = mean_weight_of(mesh);
   if (order == CollapseOrder::kPartitioned) {
     state.partition_faces = 32;
-    state.stretch_faces = 512;
+    state.range_faces = 512;
   }
   if (attributes && options.keep_history) attributes->keep_changes();
   VKMESH_TRY(Outcome outcome, run(state, options, order, progress));

@@ -28,8 +28,8 @@ namespace {
 
 using detail::CollapseMesh;
 using detail::CollapseVertex;
-using detail::Stretch;
 using detail::SweepBatch;
+using detail::VertexRange;
 using test::ring_of;
 
 CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
@@ -86,13 +86,13 @@ TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the lea
     for (std::uint32_t v = 0; v < mesh.apex(); ++v)
       mesh.vertices[v].c = 1e-7f * static_cast<float>(random() % 1000);
     const std::uint32_t n = mesh.apex();
-    const Stretch stretch = seed < 12 ? Stretch{0, n} : Stretch{n / 5, n / 5 + n / 2};
+    const VertexRange range = seed < 12 ? VertexRange{0, n} : VertexRange{n / 5, n / 5 + n / 2};
     std::vector<std::uint32_t> some;
-    for (std::uint32_t v = stretch.begin + seed % 12;
-         v < stretch.end && some.size() < SweepBatch::kSize - seed % 3; v += 7)
+    for (std::uint32_t v = range.begin + seed % 12;
+         v < range.end && some.size() < SweepBatch::kSize - seed % 3; v += 7)
       some.push_back(v);
     SweepBatch batch;
-    batch.set(mesh, some, stretch);
+    batch.set(mesh, some, range);
     REQUIRE(batch.count == some.size());
     for (std::size_t i = 0; i < some.size(); ++i) {
       const auto ring = ring_of(mesh, some[i]);
@@ -100,8 +100,8 @@ TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the lea
         CHECK(!batch.has_best(i));
         continue;
       }
-      // The apex is of no stretch.
-      const bool inside = std::ranges::all_of(ring, [&](std::uint32_t v) { return stretch.holds(v); });
+      // The apex is of no range.
+      const bool inside = std::ranges::all_of(ring, [&](std::uint32_t v) { return range.holds(v); });
       REQUIRE(batch.is_inside[i] == (inside ? 1u : 0u));
       REQUIRE(batch.has_best(i) == inside);
       REQUIRE(batch.size[i] == ring.size());
@@ -147,27 +147,26 @@ detail::Limits any_angle() {
   return limits;
 }
 
-TEST_CASE("a sweep takes what costs little from its stretch alone, and leaves the surface what it is",
+TEST_CASE("a sweep takes what costs little from its range alone, and leaves the surface what it is",
           "[decimate]") {
   for (std::uint32_t seed = 0; seed < 16; ++seed) {
     const IndexedFaceSet shape = shapes()[seed % 4];
     CollapseMesh mesh = mesh_of(seed < 8 ? shape : spread(shape), seed);
     const std::uint32_t n = mesh.apex();
-    const Stretch stretch = seed % 2 == 0 ? Stretch{0, n} : Stretch{n / 8, n};
+    const VertexRange range = seed % 2 == 0 ? VertexRange{0, n} : VertexRange{n / 8, n};
     for (std::uint32_t v = 5; v < n; v += 31) mesh.vertices[v].source |= CollapseVertex::kLocked;
     std::vector<CollapseVertex> before;
     for (std::uint32_t v = 0; v < n; ++v) before.push_back(mesh.vertices[v]);
     std::vector<CollapseMesh::Face> faces_before;
     for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) faces_before.push_back(mesh.face(h));
     std::size_t inner = 0;
-    for (std::uint32_t v = stretch.begin; v < stretch.end; ++v)
-      inner +=
-          std::ranges::all_of(ring_of(mesh, v), [&](std::uint32_t r) { return stretch.holds(r); }) ? 1 : 0;
+    for (std::uint32_t v = range.begin; v < range.end; ++v)
+      inner += std::ranges::all_of(ring_of(mesh, v), [&](std::uint32_t r) { return range.holds(r); }) ? 1 : 0;
     const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), n, false, {}};
     const float half = detail::cost_of_share(mesh, 0.5);
     REQUIRE(half < detail::cost_of_share(mesh, 1));
-    detail::VertexSweep sweep(state, stretch, half);
+    detail::VertexSweep sweep(state, range, half);
     sweep.run_over_all();
     check(mesh);
 
@@ -175,7 +174,7 @@ TEST_CASE("a sweep takes what costs little from its stretch alone, and leaves th
     for (std::uint32_t v = 0; v < n; ++v) {
       const CollapseVertex& vertex = mesh.vertices[v];
       CHECK(vertex.position == before[v].position);
-      if (!stretch.holds(v)) {
+      if (!range.holds(v)) {
         CHECK(vertex.leading == before[v].leading);
         CHECK(vertex.source == before[v].source);
         CHECK(vertex.weight == before[v].weight);
@@ -187,12 +186,12 @@ TEST_CASE("a sweep takes what costs little from its stretch alone, and leaves th
         continue;
       }
       ++gone;
-      CHECK(stretch.holds(v));
+      CHECK(range.holds(v));
       CHECK(!vertex.has(CollapseVertex::kLocked));
     }
     for (std::size_t f = 0; f < faces_before.size(); ++f) {
       const CollapseMesh::Face &face = mesh.face(static_cast<std::uint32_t>(4 * f)), &old = faces_before[f];
-      if (std::ranges::all_of(old.origin, [&](std::uint32_t v) { return stretch.holds(v); })) continue;
+      if (std::ranges::all_of(old.origin, [&](std::uint32_t v) { return range.holds(v); })) continue;
       CHECK(face.origin == old.origin);
       CHECK(face.twin == old.twin);
     }
@@ -203,18 +202,18 @@ TEST_CASE("a sweep takes what costs little from its stretch alone, and leaves th
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
     CHECK(faces == state.faces);
 
-    // What could not go for the stretch's sake is told, each once.
-    std::vector<std::uint32_t> left_out(sweep.left_out().begin(), sweep.left_out().end());
-    std::ranges::sort(left_out);
-    CHECK(std::ranges::adjacent_find(left_out) == left_out.end());
-    for (std::uint32_t v = stretch.begin; v < stretch.end; ++v) {
+    // What could not go for the range's sake is told, each once.
+    std::vector<std::uint32_t> deferred(sweep.deferred().begin(), sweep.deferred().end());
+    std::ranges::sort(deferred);
+    CHECK(std::ranges::adjacent_find(deferred) == deferred.end());
+    for (std::uint32_t v = range.begin; v < range.end; ++v) {
       if (before[v].has(CollapseVertex::kLocked) || !mesh.vertices[v].alive()) continue;
       const auto ring = ring_of(mesh, v);
-      const auto leaves = [&](std::uint32_t r) { return !stretch.holds(r); };
+      const auto leaves = [&](std::uint32_t r) { return !range.holds(r); };
       if (ring.size() <= SweepBatch::kMost && std::ranges::any_of(ring, leaves))
-        CHECK(std::ranges::binary_search(left_out, v));
+        CHECK(std::ranges::binary_search(deferred, v));
     }
-    for (const std::uint32_t v : left_out) CHECK(mesh.vertices[v].alive());
+    for (const std::uint32_t v : deferred) CHECK(mesh.vertices[v].alive());
   }
 }
 
@@ -251,7 +250,7 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
     limits.faces = mesh.face_count() / divisor;
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
     state.partition_faces = 128;
-    state.stretch_faces = 1024;
+    state.range_faces = 1024;
     change(state, limits);
     detail::sweep_if_far(state);
     check(mesh);
@@ -266,8 +265,8 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
   const std::size_t all = grid.face_count(), near = left_of(grid, 8, as_is);
   CHECK(left_of(grid, 7, as_is) == all);
   CHECK(near < all * 2 / 3);
-  // What is at the ends of stretches goes, too.
-  const std::size_t in_one = left_of(grid, 8, [](auto& state, auto&) { state.stretch_faces = 1 << 20; });
+  // What is at the ends of ranges goes, too.
+  const std::size_t in_one = left_of(grid, 8, [](auto& state, auto&) { state.range_faces = 1 << 20; });
   CHECK(near < in_one * 21 / 20);
   CHECK(left_of(grid, 16, as_is) == near);
   const std::size_t far = left_of(grid, 100, as_is);
@@ -289,7 +288,7 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
   }
 }
 
-TEST_CASE("stretches are swept side by side as one after another", "[decimate]") {
+TEST_CASE("ranges are swept side by side as one after another", "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   IndexedFaceSet shape = test::grid(60, 400);
   test::jitter(shape, 0.05f, 1);
@@ -299,7 +298,7 @@ TEST_CASE("stretches are swept side by side as one after another", "[decimate]")
     const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
     state.partition_faces = 1024;
-    state.stretch_faces = 2048;
+    state.range_faces = 2048;
     tbb::task_arena(threads).execute([&] { detail::sweep_if_far(state); });
     CHECK(state.faces < mesh.face_count() * 2 / 3);
     std::vector<std::uint32_t> words;
@@ -321,7 +320,7 @@ TEST_CASE("stretches are swept side by side as one after another", "[decimate]")
 TEST_CASE("decimation: what is far from its target is swept at first, on any number of threads alike",
           "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
-  // Of the grid six rows are a stretch.
+  // Of the grid six rows are a range.
   IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
   test::jitter(mesh, 0.05f, 1);
   for (const DecimateOptions& way : test::ways()) {

@@ -29,11 +29,11 @@ double times_the_target(const DecimationState& state) {
 
 }  // namespace
 
-VertexSweep::VertexSweep(DecimationState& state, const Stretch& stretch, float most)
+VertexSweep::VertexSweep(DecimationState& state, const VertexRange& range, float most)
     : state_(state),
       mesh_(state.mesh),
       vertices_(state.mesh.vertices),
-      stretch_(stretch),
+      range_(range),
       most_(most),
       merger_(state.mesh) {}
 
@@ -44,7 +44,7 @@ bool VertexSweep::is_candidate(std::uint32_t v) const {
 void VertexSweep::run_over_all() {
   std::vector<std::uint32_t> candidates;
   candidates.reserve(kAtOnce);
-  for (std::uint32_t v = stretch_.begin; v < stretch_.end && !state_.reached(); ++v) {
+  for (std::uint32_t v = range_.begin; v < range_.end && !state_.reached(); ++v) {
     prefetch_stream(&vertices_[v]);
     if (!is_candidate(v)) continue;
     prefetch(mesh_.faces() + vertices_[v].leading / 4);
@@ -77,7 +77,7 @@ void VertexSweep::sweep(std::span<const std::uint32_t> candidates) {
       some[count] = candidates[k];
       count += vertices_[candidates[k]].alive() ? 1 : 0;
     }
-    batch_->set(mesh_, std::span(some).first(count), stretch_);
+    batch_->set(mesh_, std::span(some).first(count), range_);
     sweep_batch();
   }
 }
@@ -91,7 +91,7 @@ void VertexSweep::sweep_batch() {
     due_count +=
         static_cast<std::size_t>(batch.has_best(i)) & static_cast<std::size_t>(batch.cost_of(i) <= most_);
     if (batch.is_inside[i] == 0) [[unlikely]]
-      left_out_.push_back(batch.vertex[i]);
+      deferred_.push_back(batch.vertex[i]);
   }
   for (const std::uint8_t i : std::span(due).first(due_count))
     at_target_[i].walk(mesh_, mesh_.twin(batch.ring[i].edge[batch.best_of(i)]));
@@ -108,8 +108,8 @@ void VertexSweep::attempt(std::size_t i) {
   const std::uint32_t size = at_q.size(mesh_.twin(h));
   const CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
   if (size == 0 || ((vp.source | vq.source) & CollapseVertex::kTouched) != 0 || state_.reached()) return;
-  if (!at_q.is_inside(stretch_)) {
-    left_out_.push_back(p);
+  if (!at_q.is_inside(range_)) {
+    deferred_.push_back(p);
     return;
   }
   const auto some = [](const std::array<std::uint32_t, 3 * SweepBatch::kMost>& words, std::size_t first,
@@ -165,22 +165,21 @@ void sweep_if_far(DecimationState& state) {
       cost_of_share(mesh, kShare) * static_cast<float>(std::clamp(times / kFarther, 1.0, 64.0));
 
   // First as they follow each other, and then what is at their ends, from one's middle to the next's.
-  const std::size_t n = mesh.apex(),
-                    count = std::max<std::size_t>(mesh.face_count() / state.stretch_faces, 1);
+  const std::size_t n = mesh.apex(), count = std::max<std::size_t>(mesh.face_count() / state.range_faces, 1);
   const auto at_half = [&](std::size_t k) { return static_cast<std::uint32_t>(n * k / (2 * count)); };
-  std::vector<std::vector<std::uint32_t>> left_out(count);
-  const auto side_by_side = [&](std::size_t stretches, auto&& stretch_of, auto&& sweep) {
+  std::vector<std::vector<std::uint32_t>> deferred(count);
+  const auto side_by_side = [&](std::size_t ranges, auto&& range_of, auto&& sweep) {
     const double faces = static_cast<double>(state.faces - state.limits.faces),
                  vertices = static_cast<double>(state.vertices - state.limits.vertices);
-    std::vector<std::unique_ptr<PartitionState>> partitions(stretches);
+    std::vector<std::unique_ptr<PartitionState>> partitions(ranges);
     for (auto& partition : partitions) partition = std::make_unique<PartitionState>(state);
-    parallel_ranges(stretches, 1, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(ranges, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Stretch stretch = stretch_of(i);
-        const double share = static_cast<double>(stretch.end - stretch.begin) / static_cast<double>(n);
+        const VertexRange range = range_of(i);
+        const double share = static_cast<double>(range.end - range.begin) / static_cast<double>(n);
         partitions[i]->start(static_cast<std::size_t>(share * faces),
                              static_cast<std::size_t>(share * vertices));
-        sweep(i, VertexSweep(partitions[i]->state, stretch, most));
+        sweep(i, VertexSweep(partitions[i]->state, range, most));
       }
     });
     for (const auto& partition : partitions) partition->report_to(state);
@@ -188,21 +187,21 @@ void sweep_if_far(DecimationState& state) {
   side_by_side(
       count,
       [&](std::size_t i) {
-        return Stretch{at_half(2 * i), at_half(2 * i + 2)};
+        return VertexRange{at_half(2 * i), at_half(2 * i + 2)};
       },
       [&](std::size_t i, VertexSweep&& sweep) {
         sweep.run_over_all();
-        left_out[i].assign(sweep.left_out().begin(), sweep.left_out().end());
+        deferred[i].assign(sweep.deferred().begin(), sweep.deferred().end());
       });
   if (state.reached()) return;
   side_by_side(
       count - 1,
       [&](std::size_t i) {
-        return Stretch{at_half(2 * i + 1), at_half(2 * i + 3)};
+        return VertexRange{at_half(2 * i + 1), at_half(2 * i + 3)};
       },
       [&](std::size_t i, VertexSweep&& sweep) {
         std::vector<std::uint32_t> candidates;
-        for (const auto& some : {left_out[i], left_out[i + 1]})
+        for (const auto& some : {deferred[i], deferred[i + 1]})
           for (const std::uint32_t v : some)
             if (v >= at_half(2 * i + 1) && v < at_half(2 * i + 3)) candidates.push_back(v);
         sweep.run(candidates);

@@ -17,19 +17,19 @@ namespace vkmesh::detail {
 /// many leaves hardly a trace in the end. Each vertex goes to where that costs least, where the surface is
 /// smooth, and those that stay do not move; the collapses that follow place them anew, by all the planes.
 ///
-/// It keeps to a stretch. Where a vertex has a neighbour elsewhere, it neither goes nor takes another in: no
+/// It keeps to a range. Where a vertex has a neighbour elsewhere, it neither goes nor takes another in: no
 /// face that has a corner elsewhere changes, and of a vertex next to those elsewhere nothing but where its
-/// fan begins. So several stretches can be swept side by side.
+/// fan begins. So several ranges can be swept side by side.
 class VertexSweep {
  public:
-  /// No vertex goes at more than the cost `most`. `state`: of this stretch, or of all.
-  VertexSweep(DecimationState& state, const Stretch& stretch, float most);
+  /// No vertex goes at more than the cost `most`. `state`: of this range, or of all.
+  VertexSweep(DecimationState& state, const VertexRange& range, float most);
 
   void run_over_all();
   /// Over these, in this order.
   void run(std::span<const std::uint32_t> candidates);
-  /// Those that could not go because of what lies beyond the stretch; at the boundary, too.
-  [[nodiscard]] std::span<const std::uint32_t> left_out() const { return left_out_; }
+  /// Those that could not go because of what lies beyond the range; at the boundary, too.
+  [[nodiscard]] std::span<const std::uint32_t> deferred() const { return deferred_; }
 
  private:
   [[nodiscard]] bool is_candidate(std::uint32_t v) const;
@@ -40,13 +40,13 @@ class VertexSweep {
   DecimationState& state_;
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
-  Stretch stretch_;
+  VertexRange range_;
   float most_;
   EdgeMerger<false> merger_;
   std::unique_ptr<SweepBatch> batch_ = std::make_unique<SweepBatch>();
   std::vector<SweepBatch::Ring> at_target_ = std::vector<SweepBatch::Ring>(SweepBatch::kSize);
   std::vector<std::uint32_t> touched_;  // and kept, by this batch
-  std::vector<std::uint32_t> left_out_;
+  std::vector<std::uint32_t> deferred_;
 };
 
 /// What this share of the vertices would cost at most, by a sample; 0 where there are none.

@@ -43,7 +43,7 @@ void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
   }
 }
 
-VKMESH_CLONES void find_best(const CollapseVertex* vertices, const Stretch& stretch, SweepBatch& batch) {
+VKMESH_CLONES void find_best(const CollapseVertex* vertices, const VertexRange& range, SweepBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     const CollapseVertex& p = vertices[batch.vertex[i]];
     const SweepBatch::Ring& ring = batch.ring[i];
@@ -57,7 +57,7 @@ VKMESH_CLONES void find_best(const CollapseVertex* vertices, const Stretch& stre
       const float cost = quadric_value(a, b, p.c, x, y, z) + around.c[k];
       const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMost * kMost + k;
       least = least < bits ? least : bits;
-      outside |= stretch.holds(ring.vertex[k]) ? 0u : 1u;
+      outside |= range.holds(ring.vertex[k]) ? 0u : 1u;
       const std::uint32_t last = ring.edge[k] == p.leading ? k : kMost;
       size = size < last ? size : last;
     }
@@ -69,13 +69,14 @@ VKMESH_CLONES void find_best(const CollapseVertex* vertices, const Stretch& stre
 
 }  // namespace
 
-void SweepBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const Stretch& stretch) {
+void SweepBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> some,
+                     const VertexRange& range) {
   const CollapseVertex* const vertices = mesh.vertices.data();
   count = some.size();
   std::copy(some.begin(), some.end(), vertex.begin());
   for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[some[i]].leading);
   gather_neighbours(vertices, *this);
-  find_best(vertices, stretch, *this);
+  find_best(vertices, range, *this);
   for (std::size_t i = 0; i < count; ++i)
     for (auto* const words : {&ring[i].vertex, &ring[i].edge}) {
       std::array<std::uint32_t, kMost> first;

@@ -13,7 +13,7 @@
 namespace vkmesh::detail {
 
 /// Vertices that follow each other in memory.
-struct Stretch {
+struct VertexRange {
   std::uint32_t begin, end;
 
   [[nodiscard]] bool holds(std::uint32_t v) const { return v - begin < end - begin; }
@@ -53,19 +53,19 @@ struct SweepBatch {
       for (std::uint32_t k = 0; k < kMost; ++k) found |= (edge[k] == start ? 1u : 0u) << k;
       return found == 0 ? 0 : static_cast<std::uint32_t>(std::countr_zero(found)) + 1;
     }
-    /// Whether all of the kMost walked to are of the stretch.
-    [[nodiscard]] bool is_inside(const Stretch& stretch) const {
+    /// Whether all of the kMost walked to are of the range.
+    [[nodiscard]] bool is_inside(const VertexRange& range) const {
       bool inside = true;
-      for (std::uint32_t k = 0; k < kMost; ++k) inside &= stretch.holds(vertex[k]);
+      for (std::uint32_t k = 0; k < kMost; ++k) inside &= range.holds(vertex[k]);
       return inside;
     }
   };
 
   /// Takes up to kSize vertices that are not isolated, looks around each, and finds its neighbours' costs.
-  void set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const Stretch& stretch);
+  void set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const VertexRange& range);
 
   /// Of vertex i: whether it has a neighbour to go to, which one that is in its ring, and the sum of both
-  /// quadrics there, to one part in 2^20. It has none at the boundary, and none at the end of the stretch.
+  /// quadrics there, to one part in 2^20. It has none at the boundary, and none at the end of the range.
   [[nodiscard]] bool has_best(std::size_t i) const {
     return best[i] < kNone;
   }
@@ -80,7 +80,7 @@ struct SweepBatch {
   std::array<std::uint32_t, kSize> vertex;
   std::array<Ring, kSize> ring;
   std::array<std::uint32_t, kSize> size;       // of the ring
-  std::array<std::uint32_t, kSize> is_inside;  // the ring, of the stretch
+  std::array<std::uint32_t, kSize> is_inside;  // the ring, of the range
 
   /// Bits of an infinite cost.
   static constexpr std::uint32_t kNone = 0x7f800000;
