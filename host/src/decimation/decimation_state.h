@@ -68,7 +68,7 @@ struct DecimationState {
   bool boundary_kept = false;
   double mean_weight = 0;                              // of all vertices at first
   std::size_t partition_faces = std::size_t{1} << 16;  // of partitions that are decimated side by side
-  std::size_t range_faces = std::size_t{3} << 16;      // of ranges that are swept so
+  std::size_t range_faces = std::size_t{3} << 16;      // of ranges that are coarsened so
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };

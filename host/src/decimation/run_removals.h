@@ -14,13 +14,13 @@
 namespace vkmesh::detail {
 
 /// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartitionedCollapses does,
-/// fill(), step(), kStep, hold(), which tells what holds the candidates that are left, and kMaySweep: whether
-/// the cheapest need not go first while much is to go.
+/// fill(), step(), kStep, hold(), which tells what holds the candidates that are left, and kMayCoarsen:
+/// whether the cheapest need not go first while much is to go.
 template <class Removals>
 Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const Limits& limits = state.limits;
-  if constexpr (Removals::kMaySweep) sweep_if_far(state);
+  if constexpr (Removals::kMayCoarsen) coarsen_if_far_from_target(state);
   Removals removals(state);
   if (!state.reached()) removals.fill();
   const std::size_t first_faces = state.faces, first_vertices = state.vertices;

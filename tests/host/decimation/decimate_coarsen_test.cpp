@@ -26,9 +26,9 @@
 namespace vkmesh {
 namespace {
 
+using detail::CoarsenBatch;
 using detail::CollapseMesh;
 using detail::CollapseVertex;
-using detail::SweepBatch;
 using detail::VertexRange;
 using test::ring_of;
 
@@ -78,7 +78,7 @@ Vec3 normal_of(const CollapseMesh& mesh, std::uint32_t f) {
 
 }  // namespace
 
-TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the least cost", "[decimate]") {
+TEST_CASE("coarsening knows the ring of each vertex, and where that goes at the least cost", "[decimate]") {
   for (std::uint32_t seed = 0; seed < 24; ++seed) {
     CollapseMesh mesh = mesh_of(shapes()[seed % 4], seed);
     std::mt19937 random(seed);
@@ -87,16 +87,16 @@ TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the lea
       mesh.vertices[v].c = 1e-7f * static_cast<float>(random() % 1000);
     const std::uint32_t n = mesh.apex();
     const VertexRange range = seed < 12 ? VertexRange{0, n} : VertexRange{n / 5, n / 5 + n / 2};
-    std::vector<std::uint32_t> some;
+    std::vector<std::uint32_t> chosen;
     for (std::uint32_t v = range.begin + seed % 12;
-         v < range.end && some.size() < SweepBatch::kSize - seed % 3; v += 7)
-      some.push_back(v);
-    SweepBatch batch;
-    batch.set(mesh, some, range);
-    REQUIRE(batch.count == some.size());
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const auto ring = ring_of(mesh, some[i]);
-      if (ring.size() > SweepBatch::kMost) {
+         v < range.end && chosen.size() < CoarsenBatch::kSize - seed % 3; v += 7)
+      chosen.push_back(v);
+    CoarsenBatch batch;
+    batch.set(mesh, chosen, range);
+    REQUIRE(batch.count == chosen.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      const auto ring = ring_of(mesh, chosen[i]);
+      if (ring.size() > CoarsenBatch::kMaxNeighbours) {
         CHECK(!batch.has_best(i));
         continue;
       }
@@ -106,17 +106,17 @@ TEST_CASE("a sweep knows the ring of each vertex, and where that goes at the lea
       REQUIRE(batch.has_best(i) == inside);
       REQUIRE(batch.size[i] == ring.size());
       // It comes again, and can be read on from any neighbour.
-      for (std::size_t k = 0; k < ring.size() + SweepBatch::kMost; ++k) {
+      for (std::size_t k = 0; k < ring.size() + CoarsenBatch::kMaxNeighbours; ++k) {
         const std::uint32_t h = batch.ring[i].edge[k];
         REQUIRE(batch.ring[i].vertex[k] == ring[k % ring.size()]);
-        REQUIRE(mesh.origin(h) == some[i]);
+        REQUIRE(mesh.origin(h) == chosen[i]);
         REQUIRE(mesh.target(h) == ring[k % ring.size()]);
       }
       if (!inside) continue;
       std::vector<double> costs;
-      for (const std::uint32_t r : ring) costs.push_back(cost_of(mesh.vertices[some[i]], mesh.vertices[r]));
+      for (const std::uint32_t r : ring) costs.push_back(cost_of(mesh.vertices[chosen[i]], mesh.vertices[r]));
       const double least = std::ranges::min(costs),
-                   rounding = 1e-6 * static_cast<double>(mesh.vertices[some[i]].weight);
+                   rounding = 1e-6 * static_cast<double>(mesh.vertices[chosen[i]].weight);
       CHECK(std::abs(costs[batch.best_of(i)] - least) <= 2e-6 * least + rounding);
       CHECK(std::abs(static_cast<double>(batch.cost_of(i)) - least) <= 2e-6 * least + rounding);
     }
@@ -147,7 +147,7 @@ detail::Limits any_angle() {
   return limits;
 }
 
-TEST_CASE("a sweep takes what costs little from its range alone, and leaves the surface what it is",
+TEST_CASE("coarsening takes what costs little from its range alone, and leaves the surface what it is",
           "[decimate]") {
   for (std::uint32_t seed = 0; seed < 16; ++seed) {
     const IndexedFaceSet shape = shapes()[seed % 4];
@@ -166,8 +166,8 @@ TEST_CASE("a sweep takes what costs little from its range alone, and leaves the 
     detail::DecimationState state{mesh, limits, mesh.face_count(), n, false, {}};
     const float half = detail::cost_of_share(mesh, 0.5);
     REQUIRE(half < detail::cost_of_share(mesh, 1));
-    detail::VertexSweep sweep(state, range, half);
-    sweep.run_over_all();
+    detail::RangeCoarsening coarsening(state, range, half);
+    coarsening.run_all();
     check(mesh);
 
     std::size_t gone = 0;
@@ -203,21 +203,21 @@ TEST_CASE("a sweep takes what costs little from its range alone, and leaves the 
     CHECK(faces == state.faces);
 
     // What could not go for the range's sake is told, each once.
-    std::vector<std::uint32_t> deferred(sweep.deferred().begin(), sweep.deferred().end());
+    std::vector<std::uint32_t> deferred(coarsening.deferred().begin(), coarsening.deferred().end());
     std::ranges::sort(deferred);
     CHECK(std::ranges::adjacent_find(deferred) == deferred.end());
     for (std::uint32_t v = range.begin; v < range.end; ++v) {
       if (before[v].has(CollapseVertex::kLocked) || !mesh.vertices[v].alive()) continue;
       const auto ring = ring_of(mesh, v);
       const auto leaves = [&](std::uint32_t r) { return !range.holds(r); };
-      if (ring.size() <= SweepBatch::kMost && std::ranges::any_of(ring, leaves))
+      if (ring.size() <= CoarsenBatch::kMaxNeighbours && std::ranges::any_of(ring, leaves))
         CHECK(std::ranges::binary_search(deferred, v));
     }
     for (const std::uint32_t v : deferred) CHECK(mesh.vertices[v].alive());
   }
 }
 
-TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
+TEST_CASE("coarsening leaves alone where faces would turn much", "[decimate]") {
   const double least = std::cos(std::acos(-1.0) / 6) - 1e-4;
   std::size_t merged = 0, left = 0;
   for (std::uint32_t v = 0; v < 300; v += 3) {
@@ -229,7 +229,7 @@ TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
     const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
     // This one alone.
-    detail::VertexSweep(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity())
+    detail::RangeCoarsening(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity())
         .run(std::span(&v, 1));
     merged += state.vertices < mesh.apex() ? 1 : 0;
     left += state.vertices == mesh.apex() ? 1 : 0;
@@ -240,7 +240,7 @@ TEST_CASE("a sweep leaves alone where faces would turn much", "[decimate]") {
   CHECK(left > 10);
 }
 
-TEST_CASE("a surface is swept where it is far from its target, the more the farther, and never beyond",
+TEST_CASE("a surface is coarsened where it is far from its target, the more the farther, and never beyond",
           "[decimate]") {
   const auto left_of = [](IndexedFaceSet shape, std::size_t divisor, auto&& change) {
     test::jitter(shape, 0.02f, 1);
@@ -252,7 +252,7 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
     state.partition_faces = 128;
     state.range_faces = 1024;
     change(state, limits);
-    detail::sweep_if_far(state);
+    detail::coarsen_if_far_from_target(state);
     check(mesh);
     std::size_t faces = 0;
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) faces += mesh.alive(4 * f) ? 1 : 0;
@@ -282,24 +282,24 @@ TEST_CASE("a surface is swept where it is far from its target, the more the fart
     detail::Limits limits = any_angle();
     limits.faces = rest;
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    detail::VertexSweep(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity()).run_over_all();
+    detail::RangeCoarsening(state, {0, mesh.apex()}, std::numeric_limits<float>::infinity()).run_all();
     CHECK(state.faces + 1 >= rest);
     CHECK((state.faces <= rest) == (rest > 1));
   }
 }
 
-TEST_CASE("ranges are swept side by side as one after another", "[decimate]") {
+TEST_CASE("ranges are coarsened side by side as one after another", "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   IndexedFaceSet shape = test::grid(60, 400);
   test::jitter(shape, 0.05f, 1);
-  const auto swept = [&](int threads) {
+  const auto coarsened = [&](int threads) {
     CollapseMesh mesh = test::collapse_mesh_of(test::fitted(shape));
     detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
     const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
     state.partition_faces = 1024;
     state.range_faces = 2048;
-    tbb::task_arena(threads).execute([&] { detail::sweep_if_far(state); });
+    tbb::task_arena(threads).execute([&] { detail::coarsen_if_far_from_target(state); });
     CHECK(state.faces < mesh.face_count() * 2 / 3);
     std::vector<std::uint32_t> words;
     for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4)
@@ -313,11 +313,11 @@ TEST_CASE("ranges are swept side by side as one after another", "[decimate]") {
     }
     return words;
   };
-  const auto one = swept(1);
-  for (const int threads : {2, 8}) CHECK(swept(threads) == one);
+  const auto one = coarsened(1);
+  for (const int threads : {2, 8}) CHECK(coarsened(threads) == one);
 }
 
-TEST_CASE("decimation: what is far from its target is swept at first, on any number of threads alike",
+TEST_CASE("decimation: what is far from its target is coarsened at first, on any number of threads alike",
           "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   // Of the grid six rows are a range.

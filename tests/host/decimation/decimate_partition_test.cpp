@@ -334,7 +334,7 @@ TEST_CASE("each half of an edge knows whether it is at the interface before part
 TEST_CASE("what has gone before a surface is divided is on no interface", "[decimate]") {
   Partitioned all(test::grid(60, 22), 1, 300);
   all.state.range_faces = 1 << 20;
-  detail::sweep_if_far(all.state);
+  detail::coarsen_if_far_from_target(all.state);
   REQUIRE(all.state.faces < all.mesh.face_count() * 3 / 4);
   const std::vector<std::uint8_t> labels = detail::partition_kd(all.mesh, 4);
   std::array<std::size_t, 4> sizes{};

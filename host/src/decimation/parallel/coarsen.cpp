@@ -11,13 +11,13 @@
 namespace vkmesh::detail {
 namespace {
 
-/// No edge is parked during a sweep.
+/// No edge is parked while coarsening.
 constexpr std::uint32_t kWent = CollapseVertex::kHasParked;
 /// Faces turn by 30 degrees at most.
 constexpr float kCosSmooth = 0.8660254f;
 /// Batches are taken from so many candidates that they stay in the second cache, and of distant ones:
 /// neighbours in a batch would come in each other's way.
-constexpr std::size_t kApart = 16, kAtOnce = kApart * SweepBatch::kSize;
+constexpr std::size_t kApart = 16, kAtOnce = kApart * CoarsenBatch::kSize;
 
 /// How many times as much there is as may be left, of faces or vertices.
 double times_the_target(const DecimationState& state) {
@@ -29,19 +29,19 @@ double times_the_target(const DecimationState& state) {
 
 }  // namespace
 
-VertexSweep::VertexSweep(DecimationState& state, const VertexRange& range, float most)
+RangeCoarsening::RangeCoarsening(DecimationState& state, const VertexRange& range, float max_cost)
     : state_(state),
       mesh_(state.mesh),
       vertices_(state.mesh.vertices),
       range_(range),
-      most_(most),
+      max_cost_(max_cost),
       merger_(state.mesh) {}
 
-bool VertexSweep::is_candidate(std::uint32_t v) const {
+bool RangeCoarsening::is_candidate(std::uint32_t v) const {
   return vertices_[v].alive() && !vertices_[v].has(CollapseVertex::kLocked);
 }
 
-void VertexSweep::run_over_all() {
+void RangeCoarsening::run_all() {
   std::vector<std::uint32_t> candidates;
   candidates.reserve(kAtOnce);
   for (std::uint32_t v = range_.begin; v < range_.end && !state_.reached(); ++v) {
@@ -50,46 +50,46 @@ void VertexSweep::run_over_all() {
     prefetch(mesh_.faces() + vertices_[v].leading / 4);
     candidates.push_back(v);
     if (candidates.size() < kAtOnce) continue;
-    sweep(candidates);
+    coarsen(candidates);
     candidates.clear();
   }
-  sweep(candidates);
+  coarsen(candidates);
 }
 
-void VertexSweep::run(std::span<const std::uint32_t> candidates) {
-  const auto some = [&](std::size_t from) {
+void RangeCoarsening::run(std::span<const std::uint32_t> candidates) {
+  const auto chosen = [&](std::size_t from) {
     from = std::min(from, candidates.size());
     return candidates.subspan(from, std::min(kAtOnce, candidates.size() - from));
   };
   for (std::size_t i = 0; i < candidates.size(); i += kAtOnce) {
-    for (const std::uint32_t v : some(i + 2 * kAtOnce)) prefetch(&vertices_[v]);
-    for (const std::uint32_t v : some(i + kAtOnce))
+    for (const std::uint32_t v : chosen(i + 2 * kAtOnce)) prefetch(&vertices_[v]);
+    for (const std::uint32_t v : chosen(i + kAtOnce))
       prefetch(mesh_.faces() + (vertices_[v].alive() ? vertices_[v].leading / 4 : 0));
-    sweep(some(i));
+    coarsen(chosen(i));
   }
 }
 
-void VertexSweep::sweep(std::span<const std::uint32_t> candidates) {
-  std::array<std::uint32_t, SweepBatch::kSize> some;
+void RangeCoarsening::coarsen(std::span<const std::uint32_t> candidates) {
+  std::array<std::uint32_t, CoarsenBatch::kSize> chosen;
   for (std::size_t first = 0; first < kApart; ++first) {
     std::size_t count = 0;
     for (std::size_t k = first; k < candidates.size(); k += kApart) {
-      some[count] = candidates[k];
+      chosen[count] = candidates[k];
       count += vertices_[candidates[k]].alive() ? 1 : 0;
     }
-    batch_->set(mesh_, std::span(some).first(count), range_);
-    sweep_batch();
+    batch_->set(mesh_, std::span(chosen).first(count), range_);
+    coarsen_batch();
   }
 }
 
-void VertexSweep::sweep_batch() {
-  const SweepBatch& batch = *batch_;
-  std::array<std::uint8_t, SweepBatch::kSize> due;
+void RangeCoarsening::coarsen_batch() {
+  const CoarsenBatch& batch = *batch_;
+  std::array<std::uint8_t, CoarsenBatch::kSize> due;
   std::size_t due_count = 0;
   for (std::size_t i = 0; i < batch.count; ++i) {
     due[due_count] = static_cast<std::uint8_t>(i);
     due_count +=
-        static_cast<std::size_t>(batch.has_best(i)) & static_cast<std::size_t>(batch.cost_of(i) <= most_);
+        static_cast<std::size_t>(batch.has_best(i)) & static_cast<std::size_t>(batch.cost_of(i) <= max_cost_);
     if (batch.is_inside[i] == 0) [[unlikely]]
       deferred_.push_back(batch.vertex[i]);
   }
@@ -100,9 +100,9 @@ void VertexSweep::sweep_batch() {
   touched_.clear();
 }
 
-void VertexSweep::attempt(std::size_t i) {
-  const SweepBatch& batch = *batch_;
-  const SweepBatch::Ring &at_p = batch.ring[i], &at_q = at_target_[i];
+void RangeCoarsening::attempt(std::size_t i) {
+  const CoarsenBatch& batch = *batch_;
+  const CoarsenBatch::Ring &at_p = batch.ring[i], &at_q = at_target_[i];
   const std::uint32_t best = batch.best_of(i), h = at_p.edge[best];
   const std::uint32_t p = batch.vertex[i], q = at_p.vertex[best];
   const std::uint32_t size = at_q.size(mesh_.twin(h));
@@ -112,10 +112,11 @@ void VertexSweep::attempt(std::size_t i) {
     deferred_.push_back(p);
     return;
   }
-  const auto some = [](const std::array<std::uint32_t, 3 * SweepBatch::kMost>& words, std::size_t first,
-                       std::size_t count) { return EdgeRings::Ring(words).subspan(first, count); };
-  const EdgeRings rings{some(at_p.vertex, best + 1, batch.size[i] - 1), some(at_q.vertex, 0, size - 1),
-                        some(at_p.edge, best + 1, batch.size[i] - 1), some(at_q.edge, 0, size - 1)};
+  const auto chosen = [](const std::array<std::uint32_t, 3 * CoarsenBatch::kMaxNeighbours>& words,
+                         std::size_t first,
+                         std::size_t count) { return EdgeRings::Ring(words).subspan(first, count); };
+  const EdgeRings rings{chosen(at_p.vertex, best + 1, batch.size[i] - 1), chosen(at_q.vertex, 0, size - 1),
+                        chosen(at_p.edge, best + 1, batch.size[i] - 1), chosen(at_q.edge, 0, size - 1)};
   // The rings are as they were unless a vertex of theirs went.
   if ((merger_.look_around(rings) & kWent) != 0) return;
   const DueEdge edge{
@@ -132,17 +133,17 @@ void VertexSweep::attempt(std::size_t i) {
 
 float cost_of_share(const CollapseMesh& mesh, double share) {
   constexpr std::size_t kSample = 4096;
-  const auto batch = std::make_unique<SweepBatch>();
+  const auto batch = std::make_unique<CoarsenBatch>();
   std::vector<float> costs;
-  std::vector<std::uint32_t> some;
+  std::vector<std::uint32_t> chosen;
   for (std::uint32_t k = 0; k < kSample; ++k) {
     const auto v = static_cast<std::uint32_t>(spread_evenly(k, mesh.apex()));
-    if (mesh.vertices[v].alive() && !mesh.vertices[v].has(CollapseVertex::kLocked)) some.push_back(v);
-    if (some.size() < SweepBatch::kSize && k + 1 < kSample) continue;
-    batch->set(mesh, some, {0, mesh.apex()});
+    if (mesh.vertices[v].alive() && !mesh.vertices[v].has(CollapseVertex::kLocked)) chosen.push_back(v);
+    if (chosen.size() < CoarsenBatch::kSize && k + 1 < kSample) continue;
+    batch->set(mesh, chosen, {0, mesh.apex()});
     for (std::size_t i = 0; i < batch->count; ++i)
       if (batch->has_best(i)) costs.push_back(batch->cost_of(i));
-    some.clear();
+    chosen.clear();
   }
   if (costs.empty()) return 0;
   const auto nth = costs.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(costs.size() - 1));
@@ -150,7 +151,7 @@ float cost_of_share(const CollapseMesh& mesh, double share) {
   return *nth;
 }
 
-void sweep_if_far(DecimationState& state) {
+void coarsen_if_far_from_target(DecimationState& state) {
   constexpr double kFar = 8, kFarther = 16;
   const CollapseMesh& mesh = state.mesh;
   const double times = times_the_target(state);
@@ -161,14 +162,14 @@ void sweep_if_far(DecimationState& state) {
   // The costliest tenth of the vertices is left to the queue, and what costs as much by then. The farther the
   // target, the more all costs in the end, and the less it matters.
   constexpr double kShare = 0.9;
-  const float most =
+  const float max_cost =
       cost_of_share(mesh, kShare) * static_cast<float>(std::clamp(times / kFarther, 1.0, 64.0));
 
   // First as they follow each other, and then what is at their ends, from one's middle to the next's.
   const std::size_t n = mesh.apex(), count = std::max<std::size_t>(mesh.face_count() / state.range_faces, 1);
   const auto at_half = [&](std::size_t k) { return static_cast<std::uint32_t>(n * k / (2 * count)); };
   std::vector<std::vector<std::uint32_t>> deferred(count);
-  const auto side_by_side = [&](std::size_t ranges, auto&& range_of, auto&& sweep) {
+  const auto side_by_side = [&](std::size_t ranges, auto&& range_of, auto&& coarsen) {
     const double faces = static_cast<double>(state.faces - state.limits.faces),
                  vertices = static_cast<double>(state.vertices - state.limits.vertices);
     std::vector<std::unique_ptr<PartitionState>> partitions(ranges);
@@ -179,7 +180,7 @@ void sweep_if_far(DecimationState& state) {
         const double share = static_cast<double>(range.end - range.begin) / static_cast<double>(n);
         partitions[i]->start(static_cast<std::size_t>(share * faces),
                              static_cast<std::size_t>(share * vertices));
-        sweep(i, VertexSweep(partitions[i]->state, range, most));
+        coarsen(i, RangeCoarsening(partitions[i]->state, range, max_cost));
       }
     });
     for (const auto& partition : partitions) partition->report_to(state);
@@ -189,9 +190,9 @@ void sweep_if_far(DecimationState& state) {
       [&](std::size_t i) {
         return VertexRange{at_half(2 * i), at_half(2 * i + 2)};
       },
-      [&](std::size_t i, VertexSweep&& sweep) {
-        sweep.run_over_all();
-        deferred[i].assign(sweep.deferred().begin(), sweep.deferred().end());
+      [&](std::size_t i, RangeCoarsening&& coarsening) {
+        coarsening.run_all();
+        deferred[i].assign(coarsening.deferred().begin(), coarsening.deferred().end());
       });
   if (state.reached()) return;
   side_by_side(
@@ -199,12 +200,12 @@ void sweep_if_far(DecimationState& state) {
       [&](std::size_t i) {
         return VertexRange{at_half(2 * i + 1), at_half(2 * i + 3)};
       },
-      [&](std::size_t i, VertexSweep&& sweep) {
+      [&](std::size_t i, RangeCoarsening&& coarsening) {
         std::vector<std::uint32_t> candidates;
-        for (const auto& some : {deferred[i], deferred[i + 1]})
-          for (const std::uint32_t v : some)
+        for (const auto& chosen : {deferred[i], deferred[i + 1]})
+          for (const std::uint32_t v : chosen)
             if (v >= at_half(2 * i + 1) && v < at_half(2 * i + 3)) candidates.push_back(v);
-        sweep.run(candidates);
+        coarsening.run(candidates);
       });
 }
 

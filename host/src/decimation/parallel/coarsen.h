@@ -19,13 +19,13 @@ namespace vkmesh::detail {
 ///
 /// It keeps to a range. Where a vertex has a neighbour elsewhere, it neither goes nor takes another in: no
 /// face that has a corner elsewhere changes, and of a vertex next to those elsewhere nothing but where its
-/// fan begins. So several ranges can be swept side by side.
-class VertexSweep {
+/// fan begins. So several ranges can be coarsened side by side.
+class RangeCoarsening {
  public:
-  /// No vertex goes at more than the cost `most`. `state`: of this range, or of all.
-  VertexSweep(DecimationState& state, const VertexRange& range, float most);
+  /// No vertex goes at more than the cost `max_cost`. `state`: of this range, or of all.
+  RangeCoarsening(DecimationState& state, const VertexRange& range, float max_cost);
 
-  void run_over_all();
+  void run_all();
   /// Over these, in this order.
   void run(std::span<const std::uint32_t> candidates);
   /// Those that could not go because of what lies beyond the range; at the boundary, too.
@@ -33,18 +33,18 @@ class VertexSweep {
 
  private:
   [[nodiscard]] bool is_candidate(std::uint32_t v) const;
-  void sweep(std::span<const std::uint32_t> candidates);
-  void sweep_batch();
+  void coarsen(std::span<const std::uint32_t> candidates);
+  void coarsen_batch();
   void attempt(std::size_t i);
 
   DecimationState& state_;
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
   VertexRange range_;
-  float most_;
+  float max_cost_;
   EdgeMerger<false> merger_;
-  std::unique_ptr<SweepBatch> batch_ = std::make_unique<SweepBatch>();
-  std::vector<SweepBatch::Ring> at_target_ = std::vector<SweepBatch::Ring>(SweepBatch::kSize);
+  std::unique_ptr<CoarsenBatch> batch_ = std::make_unique<CoarsenBatch>();
+  std::vector<CoarsenBatch::Ring> at_target_ = std::vector<CoarsenBatch::Ring>(CoarsenBatch::kSize);
   std::vector<std::uint32_t> touched_;  // and kept, by this batch
   std::vector<std::uint32_t> deferred_;
 };
@@ -52,9 +52,9 @@ class VertexSweep {
 /// What this share of the vertices would cost at most, by a sample; 0 where there are none.
 [[nodiscard]] float cost_of_share(const CollapseMesh& mesh, double share);
 
-/// Sweeps a large surface that is so far from its target that the order of what goes first hardly matters,
+/// Coarsens a large surface that is so far from its target that the order of what goes first hardly matters,
 /// where no error is promised: a history tells that order. O(n), on all cores; what goes does not depend on
 /// how many there are. Does nothing else.
-void sweep_if_far(DecimationState& state);
+void coarsen_if_far_from_target(DecimationState& state);
 
 }  // namespace vkmesh::detail

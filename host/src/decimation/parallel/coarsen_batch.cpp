@@ -8,13 +8,13 @@
 namespace vkmesh::detail {
 namespace {
 
-constexpr std::uint32_t kMost = SweepBatch::kMost;
+constexpr std::uint32_t kMaxNeighbours = CoarsenBatch::kMaxNeighbours;
 
 // The first words of the neighbours' records, and what their quadrics say at their own places.
 #if defined(VKMESH_HAS_CLONES)
-__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
+__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
-    SweepBatch::Around& around = batch.around[i];
+    CoarsenBatch::Around& around = batch.around[i];
     std::array<const void*, 8> rows;
     for (std::size_t k = 0; k < 8; ++k) {
       const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k]];
@@ -28,10 +28,10 @@ __attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* ver
 
 __attribute__((target("default")))
 #endif
-void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
+void gather_neighbours(const CollapseVertex* vertices, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
-    SweepBatch::Around& around = batch.around[i];
-    for (std::size_t k = 0; k < SweepBatch::kMost; k += 4) {
+    CoarsenBatch::Around& around = batch.around[i];
+    for (std::size_t k = 0; k < CoarsenBatch::kMaxNeighbours; k += 4) {
       std::array<const void*, 4> rows;
       for (std::size_t j = 0; j < 4; ++j) {
         const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k + j]];
@@ -43,45 +43,45 @@ void gather_neighbours(const CollapseVertex* vertices, SweepBatch& batch) {
   }
 }
 
-VKMESH_CLONES void find_best(const CollapseVertex* vertices, const VertexRange& range, SweepBatch& batch) {
+VKMESH_CLONES void find_best(const CollapseVertex* vertices, const VertexRange& range, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     const CollapseVertex& p = vertices[batch.vertex[i]];
-    const SweepBatch::Ring& ring = batch.ring[i];
-    const SweepBatch::Around& around = batch.around[i];
+    const CoarsenBatch::Ring& ring = batch.ring[i];
+    const CoarsenBatch::Around& around = batch.around[i];
     const auto& a = p.a;
     const auto& b = p.b;
-    std::uint32_t least = SweepBatch::kNone, outside = 0, size = kMost;
-    for (std::uint32_t k = 0; k < kMost; ++k) {
+    std::uint32_t least = CoarsenBatch::kNone, outside = 0, size = kMaxNeighbours;
+    for (std::uint32_t k = 0; k < kMaxNeighbours; ++k) {
       const float x = around.words[0][k] - p.position[0], y = around.words[1][k] - p.position[1],
                   z = around.words[2][k] - p.position[2];
       const float cost = quadric_value(a, b, p.c, x, y, z) + around.c[k];
-      const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMost * kMost + k;
+      const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMaxNeighbours * kMaxNeighbours + k;
       least = least < bits ? least : bits;
       outside |= range.holds(ring.vertex[k]) ? 0u : 1u;
-      const std::uint32_t last = ring.edge[k] == p.leading ? k : kMost;
+      const std::uint32_t last = ring.edge[k] == p.leading ? k : kMaxNeighbours;
       size = size < last ? size : last;
     }
-    batch.size[i] = size < kMost ? size + 1 : 0;
+    batch.size[i] = size < kMaxNeighbours ? size + 1 : 0;
     batch.is_inside[i] = 1 - outside;
-    batch.best[i] = outside != 0 || size == kMost ? SweepBatch::kNone : least;
+    batch.best[i] = outside != 0 || size == kMaxNeighbours ? CoarsenBatch::kNone : least;
   }
 }
 
 }  // namespace
 
-void SweepBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> some,
-                     const VertexRange& range) {
+void CoarsenBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> chosen,
+                       const VertexRange& range) {
   const CollapseVertex* const vertices = mesh.vertices.data();
-  count = some.size();
-  std::copy(some.begin(), some.end(), vertex.begin());
-  for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[some[i]].leading);
+  count = chosen.size();
+  std::copy(chosen.begin(), chosen.end(), vertex.begin());
+  for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[chosen[i]].leading);
   gather_neighbours(vertices, *this);
   find_best(vertices, range, *this);
   for (std::size_t i = 0; i < count; ++i)
     for (auto* const words : {&ring[i].vertex, &ring[i].edge}) {
-      std::array<std::uint32_t, kMost> first;
-      std::copy_n(words->begin(), kMost, first.begin());
-      std::copy_n(first.begin(), kMost, words->begin() + size[i]);
+      std::array<std::uint32_t, kMaxNeighbours> first;
+      std::copy_n(words->begin(), kMaxNeighbours, first.begin());
+      std::copy_n(first.begin(), kMaxNeighbours, words->begin() + size[i]);
     }
 }
 

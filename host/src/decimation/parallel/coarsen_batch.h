@@ -19,18 +19,18 @@ struct VertexRange {
   [[nodiscard]] bool holds(std::uint32_t v) const { return v - begin < end - begin; }
 };
 
-struct SweepBatch {
+struct CoarsenBatch {
   static constexpr std::size_t kSize = 16;
   /// Vertices of more neighbours are left alone.
-  static constexpr std::uint32_t kMost = 8;
+  static constexpr std::uint32_t kMaxNeighbours = 8;
 
   /// The neighbours of a vertex, counter-clockwise, and the half-edges from it to them. The first comes again
-  /// after the last, and so on: as many are meant as kMost has room for from any of them on.
+  /// after the last, and so on: as many are meant as kMaxNeighbours has room for from any of them on.
   struct Ring {
-    std::array<std::uint32_t, 3 * kMost> vertex{}, edge{};
+    std::array<std::uint32_t, 3 * kMaxNeighbours> vertex{}, edge{};
 
-    /// From the neighbour after the one to which `start` leads on, which comes last: kMost of them. However
-    /// many there are, nothing is to be foretold.
+    /// From the neighbour after the one to which `start` leads on, which comes last: kMaxNeighbours of them.
+    /// However many there are, nothing is to be foretold.
     void walk(const CollapseMesh& mesh, std::uint32_t start) {
       const CollapseMesh::Face* const faces = mesh.faces();
       const CollapseVertex* const vertices = mesh.vertices.data();
@@ -38,7 +38,7 @@ struct SweepBatch {
 #if defined(__GNUC__)
 #pragma GCC unroll 8
 #endif
-      for (std::uint32_t k = 0; k < kMost; ++k) {
+      for (std::uint32_t k = 0; k < kMaxNeighbours; ++k) {
         const CollapseMesh::Face& face = faces[at >> 2];
         const std::uint32_t corner = CollapseMesh::kPreviousCorner[at & 3u];
         vertex[k] = face.origin[corner];
@@ -47,22 +47,22 @@ struct SweepBatch {
       }
     }
     /// How many neighbours there are if they begin after the one to which `start` leads; 0 if more than
-    /// kMost.
+    /// kMaxNeighbours.
     [[nodiscard]] std::uint32_t size(std::uint32_t start) const {
       std::uint32_t found = 0;
-      for (std::uint32_t k = 0; k < kMost; ++k) found |= (edge[k] == start ? 1u : 0u) << k;
+      for (std::uint32_t k = 0; k < kMaxNeighbours; ++k) found |= (edge[k] == start ? 1u : 0u) << k;
       return found == 0 ? 0 : static_cast<std::uint32_t>(std::countr_zero(found)) + 1;
     }
-    /// Whether all of the kMost walked to are of the range.
+    /// Whether all of the kMaxNeighbours walked to are of the range.
     [[nodiscard]] bool is_inside(const VertexRange& range) const {
       bool inside = true;
-      for (std::uint32_t k = 0; k < kMost; ++k) inside &= range.holds(vertex[k]);
+      for (std::uint32_t k = 0; k < kMaxNeighbours; ++k) inside &= range.holds(vertex[k]);
       return inside;
     }
   };
 
   /// Takes up to kSize vertices that are not isolated, looks around each, and finds its neighbours' costs.
-  void set(const CollapseMesh& mesh, std::span<const std::uint32_t> some, const VertexRange& range);
+  void set(const CollapseMesh& mesh, std::span<const std::uint32_t> chosen, const VertexRange& range);
 
   /// Of vertex i: whether it has a neighbour to go to, which one that is in its ring, and the sum of both
   /// quadrics there, to one part in 2^20. It has none at the boundary, and none at the end of the range.
@@ -70,10 +70,10 @@ struct SweepBatch {
     return best[i] < kNone;
   }
   [[nodiscard]] std::uint32_t best_of(std::size_t i) const {
-    return best[i] % kMost;
+    return best[i] % kMaxNeighbours;
   }
   [[nodiscard]] float cost_of(std::size_t i) const {
-    return std::bit_cast<float>(best[i] / kMost * kMost);
+    return std::bit_cast<float>(best[i] / kMaxNeighbours * kMaxNeighbours);
   }
 
   std::size_t count = 0;
@@ -87,8 +87,8 @@ struct SweepBatch {
   /// The bits of the least cost, but for the last three, which tell the neighbour.
   std::array<std::uint32_t, kSize> best;
 
-  /// One lane for each of kMost neighbours.
-  using Lanes = std::array<float, kMost>;
+  /// One lane for each of kMaxNeighbours neighbours.
+  using Lanes = std::array<float, kMaxNeighbours>;
   struct Around {
     std::array<Lanes, 4> words;  // x, y, z, and what follows
     Lanes c;

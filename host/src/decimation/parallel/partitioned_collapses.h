@@ -32,7 +32,7 @@ template <class Placement, class Queue, bool kAttributes>
 class PartitionedCollapses {
  public:
   static constexpr std::size_t kStep = kRemovalsBetweenReports;
-  static constexpr bool kMaySweep = !Queue::kExact;
+  static constexpr bool kMayCoarsen = !Queue::kExact;
 
   explicit PartitionedCollapses(DecimationState& state) : state_(state) {
     const std::size_t count = partition_count(), edges = 3 * state.mesh.face_count() / 2 + 1;
