@@ -16,6 +16,7 @@
 
 #include "base/parallel.h"
 #include "base/prefetch.h"
+#include "decimation/collapse_neighbourhood.h"
 #include "decimation/cost/attribute_quadrics.h"
 #include "decimation/cost/edge_batch.h"
 #include "decimation/cost/placements.h"
@@ -27,7 +28,6 @@
 #include "decimation/order/pending_edges.h"
 #include "decimation/parallel/partition.h"
 #include "mesh/edit/collapse_mesh.h"
-#include "mesh/edit/edge_rim.h"
 
 namespace vkmesh::detail {
 
@@ -441,7 +441,8 @@ class EdgeCollapses {
         edges.push_back(out);
       }
       size = vertices.size();
-      vertices.resize((size + EdgeRim::kBlock - 1) / EdgeRim::kBlock * EdgeRim::kBlock);
+      vertices.resize((size + CollapseNeighbourhood::kBlock - 1) / CollapseNeighbourhood::kBlock *
+                      CollapseNeighbourhood::kBlock);
     }
   };
 

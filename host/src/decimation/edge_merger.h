@@ -10,18 +10,18 @@
 
 #include <vkmesh/decimation/decimate.h>
 
+#include "decimation/collapse_neighbourhood.h"
 #include "decimation/cost/attribute_quadrics.h"
 #include "decimation/cost/edge_batch.h"
 #include "decimation/cost/tangential_drift.h"
 #include "decimation/decimation_state.h"
 #include "decimation/legality/fold_over.h"
 #include "mesh/edit/collapse_mesh.h"
-#include "mesh/edit/edge_rim.h"
 
 namespace vkmesh::detail {
 
 /// The neighbours of p but q and those of q but p, counter-clockwise, and the half-edges from p and q to
-/// them. What follows the neighbours up to a multiple of EdgeRim::kBlock is there, too.
+/// them. What follows the neighbours up to a multiple of CollapseNeighbourhood::kBlock is there, too.
 struct EdgeRings {
   using Ring = std::span<const std::uint32_t>;
   Ring p, q, from_p, from_q;
@@ -48,24 +48,25 @@ class EdgeMerger {
 
   /// Makes these the surroundings. Returns the flags of all their vertices.
   std::uint32_t look_around(const EdgeRings& rings) {
-    around_ = rim_.set(vertices_, rings.p, rings.q);
-    return around_.flags;
+    summary_ = neighbourhood_.set(vertices_, rings.p, rings.q);
+    return summary_.flags;
   }
-  [[nodiscard]] std::uint32_t flags_around() const { return around_.flags; }
+  [[nodiscard]] std::uint32_t flags_around() const { return summary_.flags; }
 
   /// Whether the surface stays what it is, and no face turns by more than the angle of this cosine: of the
   /// edge around which it was looked.
   [[nodiscard]] Legality judge(const DueEdge& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings,
                                float cos_deviation) {
     if (!link_condition(rings)) return Legality::kLink;
-    return folds_over(rim_, vertices_[p].position, vertices_[q].position, due.x, cos_deviation)
+    return folds_over(neighbourhood_, vertices_[p].position, vertices_[q].position, due.x, cos_deviation)
                ? Legality::kFoldOver
                : Legality::kLegal;
   }
   /// See squared_distance_of_collapse; of the same edge.
   [[nodiscard]] float squared_distance(const DueEdge& due, std::uint32_t p, std::uint32_t q,
                                        float allowed) const {
-    return squared_distance_of_collapse(rim_, vertices_[p].position, vertices_[q].position, due.x, allowed);
+    return squared_distance_of_collapse(neighbourhood_, vertices_[p].position, vertices_[q].position, due.x,
+                                        allowed);
   }
 
   /// Which of two vertices goes, the half-edge from it to the other, its other neighbours and the half-edges
@@ -155,7 +156,7 @@ class EdgeMerger {
     if (rings.p.front() == rings.p.back()) return false;
     if (rings.p.size() == 2 && rings.q.size() == 2) return false;
     // The usual number of vertices was looked at before.
-    if (std::max(rings.p.size(), rings.q.size()) <= 8 + 2 && !around_.may_share) return true;
+    if (std::max(rings.p.size(), rings.q.size()) <= 8 + 2 && !summary_.may_share) return true;
     sorted_.assign(rings.p.begin() + 1, rings.p.end() - 1);
     std::sort(sorted_.begin(), sorted_.end());
     return std::none_of(rings.q.begin() + 1, rings.q.end() - 1, [&](std::uint32_t v) {
@@ -165,8 +166,8 @@ class EdgeMerger {
 
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
-  EdgeRim rim_;
-  EdgeRim::Around around_{};
+  CollapseNeighbourhood neighbourhood_;
+  CollapseNeighbourhood::Summary summary_{};
   std::vector<std::uint32_t> sorted_;
 };
 

@@ -23,11 +23,11 @@
 #include <vkmesh/passes/dihedral_angles.h>
 #include <vkmesh/repair/consolidate.h>
 
+#include "decimation/collapse_neighbourhood.h"
 #include "decimation/cost/tangential_drift.h"
 #include "decimation/decimate_support.h"
 #include "decimation/order/collapse_order.h"
 #include "math/triangle_distance.h"
-#include "mesh/edit/edge_rim.h"
 #include "support/data.h"
 #include "support/shapes.h"
 
@@ -161,9 +161,9 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
       const auto order = partitioned ? detail::CollapseOrder::kPartitioned : detail::CollapseOrder::kFast;
       const std::vector<IndexedFaceSet> shapes =
           partitioned ? std::vector{test::icosphere(2), test::torus(14, 11), test::grid(14, 13),
-                               test::both(test::icosphere(1), test::torus(12, 9))}
-                 : std::vector{test::icosphere(2), test::torus(9, 5), test::grid(6, 5), test::cylinder(4, 7),
-                               test::both(test::cube(), test::torus(5, 4))};
+                                    test::both(test::icosphere(1), test::torus(12, 9))}
+                      : std::vector{test::icosphere(2), test::torus(9, 5), test::grid(6, 5),
+                                    test::cylinder(4, 7), test::both(test::cube(), test::torus(5, 4))};
       for (const IndexedFaceSet& shape : shapes) {
         IndexedFaceSet mesh = shape;
         if (seed > 0) test::jitter(mesh, 0.1f * static_cast<float>(seed), seed);
@@ -531,13 +531,13 @@ TEST_CASE("the distance between the faces before and after a collapse", "[decima
     for (std::size_t k = 0; k <= split; ++k) at_p.push_back(static_cast<std::uint32_t>(k));
     for (std::size_t k = split; k < corners; ++k) at_q.push_back(static_cast<std::uint32_t>(k));
     at_q.push_back(0);
-    detail::EdgeRim rim;
+    detail::CollapseNeighbourhood around;
     const auto padded = [](std::vector<std::uint32_t>& some) {
       const std::size_t size = some.size();
-      some.resize(size + detail::EdgeRim::kBlock);
+      some.resize(size + detail::CollapseNeighbourhood::kBlock);
       return std::span<const std::uint32_t>(some).first(size);
     };
-    rim.set(vertices, padded(at_p), padded(at_q));
+    around.set(vertices, padded(at_p), padded(at_q));
     const auto floats = [](const DVec3& v) {
       return std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };
@@ -565,8 +565,8 @@ TEST_CASE("the distance between the faces before and after a collapse", "[decima
       const double expected = ends > least ? ends : std::max(all, least);
       (ends > least ? by_ends : all > least ? by_spokes : near) += 1;
       CAPTURE(round, corners, split, least);
-      CHECK(static_cast<double>(detail::squared_distance_of_collapse(rim, floats(p), floats(q), floats(x - p),
-                                                                     static_cast<float>(least))) ==
+      CHECK(static_cast<double>(detail::squared_distance_of_collapse(
+                around, floats(p), floats(q), floats(x - p), static_cast<float>(least))) ==
             Approx(expected).epsilon(1e-3).margin(1e-6));
     }
   }

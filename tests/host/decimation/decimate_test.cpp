@@ -397,7 +397,7 @@ TEST_CASE("decimation: the error is the root of the mean squared distance from t
 
 TEST_CASE("decimation: boundaries stay with weight and shrink without", "[decimate]") {
   const DecimateOperation operation = any_operation();
-  // A disc: its rim is a polygon of 64 sides.
+  // A disc: its around is a polygon of 64 sides.
   const IndexedFaceSet flat = test::grid(16, 16);
   IndexedFaceSet mesh = flat;
   for (Vec3& p : mesh.points) {

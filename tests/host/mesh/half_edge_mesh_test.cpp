@@ -133,13 +133,13 @@ TEST_CASE("half-edge mesh: faces across the edges of a face") {
   CHECK(across == std::vector<FaceId>{FaceId{}, FaceId{}, FaceId(1)});
 }
 
-TEST_CASE("half-edge mesh: a boundary loop runs along the rim") {
+TEST_CASE("half-edge mesh: a boundary loop runs along the around") {
   const HalfEdgeMesh mesh = test::half_edges(test::grid(2, 1));
   const auto loops = mesh.boundary_loops();
   REQUIRE(loops.size() == 1);
-  std::vector<std::uint32_t> rim;
-  for (const HalfEdgeId h : loops[0]) rim.push_back(mesh.origin(h).index);
-  CHECK(rim == std::vector<std::uint32_t>{0, 1, 2, 5, 4, 3});
+  std::vector<std::uint32_t> around;
+  for (const HalfEdgeId h : loops[0]) around.push_back(mesh.origin(h).index);
+  CHECK(around == std::vector<std::uint32_t>{0, 1, 2, 5, 4, 3});
 }
 
 TEST_CASE("half-edge mesh: an isolated vertex has no half-edge and circulates over nothing") {

@@ -127,7 +127,7 @@ TEST_CASE("polygons that repeat a point are mended", "[repair]") {
     CHECK(result.face_set.corners == std::vector<std::uint32_t>{0, 1, 2, 3});
     CHECK(result.report.mended_polygons == 1);
   }
-  SECTION("a hole joined to the rim by a bridge stays a hole") {
+  SECTION("a hole joined to the around by a bridge stays a hole") {
     // A square of side 4 with a square hole of side 2, cut along an edge between them.
     IndexedFaceSet mesh;
     mesh.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}};

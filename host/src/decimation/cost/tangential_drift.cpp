@@ -10,8 +10,8 @@
 namespace vkmesh::detail {
 namespace {
 
-using Vector = EdgeRim::Vector;
-constexpr std::int32_t kBlock = EdgeRim::kBlock;
+using Vector = CollapseNeighbourhood::Vector;
+constexpr std::int32_t kBlock = CollapseNeighbourhood::kBlock;
 
 float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -139,10 +139,10 @@ VKMESH_CLONES void bound_faces(const float* __restrict cx, const float* __restri
 
 }  // namespace
 
-float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Vector& q, const Vector& x,
-                                   float least) {
-  const std::size_t faces = rim.faces(), faces_at_p = rim.faces_at_p();
-  const auto corner = [&](std::size_t k) { return rim.corner(k, p, x); };
+float squared_distance_of_collapse(const CollapseNeighbourhood& around, const Vector& p, const Vector& q,
+                                   const Vector& x, float least) {
+  const std::size_t faces = around.faces(), faces_at_p = around.faces_at_p();
+  const auto corner = [&](std::size_t k) { return around.corner(k, p, x); };
   // All relative to p + x, where the new point lies.
   const auto half = [](const Vector& a, const Vector& b) {
     return Vector{0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]), 0.5f * (a[2] + b[2])};
@@ -164,7 +164,7 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
                             const Vector& third_at_q) {
     if (near > far) {
       BoundLanes bounds;
-      bound_faces(rim.x(), rim.y(), rim.z(), lie, point, third_at_p, third_at_q, bounds.data());
+      bound_faces(around.x(), around.y(), around.z(), lie, point, third_at_p, third_at_q, bounds.data());
       for (std::size_t k = 0; k < some; ++k) near = bounds[k] < near ? bounds[k] : near;
     }
     for (std::size_t k = 0; k < faces && near > far; ++k) {
@@ -194,7 +194,7 @@ float squared_distance_of_collapse(const EdgeRim& rim, const Vector& p, const Ve
   to_new(middle, dot(middle, middle));
   if (far > least) return far;  // far enough for now
   SpokeBounds spokes;
-  bound_spokes(rim.x(), rim.y(), rim.z(), lie, spokes.before.data(), spokes.after.data());
+  bound_spokes(around.x(), around.y(), around.z(), lie, spokes.before.data(), spokes.after.data());
   // Both have an edge to where their rings meet; of the one, it is the second at this corner.
   to_new(half(at_p, corner(0)), 0.25f * from_p);
   to_new(half(at_q, corner(faces_at_p)), 0.25f * from_q);

@@ -13,11 +13,11 @@
 namespace vkmesh::detail {
 namespace {
 
-using Vector = EdgeRim::Vector;
+using Vector = CollapseNeighbourhood::Vector;
 
 /// A triangle of less area than this share of its squared sides has no reliable normal.
 constexpr float kDegenerate = 1e-6f;
-constexpr std::int32_t kBlock = EdgeRim::kBlock;
+constexpr std::int32_t kBlock = CollapseNeighbourhood::kBlock;
 /// Cosine of the angle at which neighbours stand against each other.
 constexpr float kAgainst = -0.5f;
 
@@ -173,52 +173,55 @@ turn_faces(const float* px, const float* py, const float* pz, const Move& move) 
 
 // The normal of a face whose third corner lies at p + x, twice its area vector over the squared sides; 0 if
 // it has no area, or is none.
-Vector normal(const EdgeRim& rim, std::size_t face, const Vector& p, const Vector& x) {
-  const Vector u = rim.corner(face, p, x), v = rim.corner(face + 1, p, x);
+Vector normal(const CollapseNeighbourhood& around, std::size_t face, const Vector& p, const Vector& x) {
+  const Vector u = around.corner(face, p, x), v = around.corner(face + 1, p, x);
   const Normal n(u[0], u[1], u[2], v[0], v[1], v[2]);
   return n.exists() ? Vector{n.x / n.sides, n.y / n.sides, n.z / n.sides} : Vector{};
 }
 
 // Whether a face that had no area and has one now looks against the others.
-bool disagrees(const EdgeRim& rim, const Vector& p, const Vector& d, const Vector& x) {
+bool disagrees(const CollapseNeighbourhood& around, const Vector& p, const Vector& d, const Vector& x) {
   Vector sum{};
-  for (std::size_t k = 0; k < rim.faces(); ++k) {
-    const Vector third = k < rim.faces_at_p() ? Vector{} : d;
-    const Vector n = normal(rim, k, p, third), u = rim.corner(k, p, third), v = rim.corner(k + 1, p, third);
+  for (std::size_t k = 0; k < around.faces(); ++k) {
+    const Vector third = k < around.faces_at_p() ? Vector{} : d;
+    const Vector n = normal(around, k, p, third), u = around.corner(k, p, third),
+                 v = around.corner(k + 1, p, third);
     if (n == Vector{}) continue;
     const float sides = dot(u, u) + dot(v, v);
     for (std::size_t i = 0; i < 3; ++i) sum[i] += sides * n[i];
   }
-  for (std::size_t k = 0; k < rim.faces(); ++k)
-    if (dot(sum, normal(rim, k, p, x)) < 0) return true;
+  for (std::size_t k = 0; k < around.faces(); ++k)
+    if (dot(sum, normal(around, k, p, x)) < 0) return true;
   return false;
 }
 
 // Whether two neighbours about the kept vertex stand more against each other than any of the faces that
 // remain did before.
-bool more_against(const EdgeRim& rim, const Vector& p, const Vector& d, const Vector& x) {
+bool more_against(const CollapseNeighbourhood& around, const Vector& p, const Vector& d, const Vector& x) {
   float after = 1, before = 1;
-  for (std::size_t k = 0; k < rim.faces(); ++k) {
-    after = std::min(after, cosine(normal(rim, k, p, x), normal(rim, k + 1, p, x)));
+  for (std::size_t k = 0; k < around.faces(); ++k) {
+    after = std::min(after, cosine(normal(around, k, p, x), normal(around, k + 1, p, x)));
     // Faces of p that follow each other have an edge in common, and so have those of q.
-    if (k + 1 == rim.faces_at_p() || k + 1 == rim.faces()) continue;
-    const Vector third = k < rim.faces_at_p() ? Vector{} : d;
-    before = std::min(before, cosine(normal(rim, k, p, third), normal(rim, k + 1, p, third)));
+    if (k + 1 == around.faces_at_p() || k + 1 == around.faces()) continue;
+    const Vector third = k < around.faces_at_p() ? Vector{} : d;
+    before = std::min(before, cosine(normal(around, k, p, third), normal(around, k + 1, p, third)));
   }
   return after < before;
 }
 
 }  // namespace
 
-bool folds_over(const EdgeRim& rim, const Vector& p, const Vector& q, const Vector& x, float cos_deviation) {
+bool folds_over(const CollapseNeighbourhood& around, const Vector& p, const Vector& q, const Vector& x,
+                float cos_deviation) {
   const Vector d = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-  const auto at_p = static_cast<std::int32_t>(rim.faces_at_p()),
-             faces = static_cast<std::int32_t>(rim.faces());
-  const std::int32_t found = turn_faces(rim.x(), rim.y(), rim.z(), {p, d, x, at_p, faces, cos_deviation});
+  const auto at_p = static_cast<std::int32_t>(around.faces_at_p()),
+             faces = static_cast<std::int32_t>(around.faces());
+  const std::int32_t found =
+      turn_faces(around.x(), around.y(), around.z(), {p, d, x, at_p, faces, cos_deviation});
   if (found == 0) return false;
   if ((found & kBroken) != 0) return true;
-  if ((found & kHadNone) != 0 && disagrees(rim, p, d, x)) return true;
-  return (found & kOpposed) != 0 && more_against(rim, p, d, x);
+  if ((found & kHadNone) != 0 && disagrees(around, p, d, x)) return true;
+  return (found & kOpposed) != 0 && more_against(around, p, d, x);
 }
 
 }  // namespace vkmesh::detail

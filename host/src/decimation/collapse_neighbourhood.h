@@ -16,14 +16,14 @@ namespace vkmesh::detail {
 /// Their corners but p and q go once around both ends, so that each consecutive two span a face and
 /// neighbours among the faces follow each other. Two corners at the same place, or one at no place, span
 /// nothing.
-class EdgeRim {
+class CollapseNeighbourhood {
  public:
   using Vector = std::array<float, 3>;
   /// So many faces are looked at at a time; whole blocks can be read.
   static constexpr std::size_t kBlock = 16;
 
   /// What is known of the vertices around.
-  struct Around {
+  struct Summary {
     std::uint32_t flags;  // of all
     /// Whether one of the first eight of p's, both ends left out, is among the first eight of q's or what
     /// follows a shorter ring.
@@ -31,8 +31,8 @@ class EdgeRim {
   };
   /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the
   /// other ends, and can be read up to a multiple of kBlock.
-  Around set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
-             std::span<const std::uint32_t> around_q);
+  Summary set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
+              std::span<const std::uint32_t> around_q);
 
   /// Those at p come first.
   [[nodiscard]] std::size_t faces_at_p() const { return at_p_; }

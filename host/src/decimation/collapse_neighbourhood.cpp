@@ -1,4 +1,4 @@
-#include "mesh/edit/edge_rim.h"
+#include "decimation/collapse_neighbourhood.h"
 
 #include <algorithm>
 #include <array>
@@ -19,9 +19,9 @@ struct Corners {
 };
 
 #if defined(VKMESH_HAS_CLONES)
-__attribute__((target("avx2"))) EdgeRim::Around look_around(const Corners& corners,
-                                                            std::span<const std::uint32_t> p,
-                                                            const std::uint32_t* q) {
+__attribute__((target("avx2"))) CollapseNeighbourhood::Summary look_around(const Corners& corners,
+                                                                           std::span<const std::uint32_t> p,
+                                                                           const std::uint32_t* q) {
   using Eight = std::uint32_t __attribute__((vector_size(32)));
   using Four = std::uint64_t __attribute__((vector_size(32)));
   Eight flags{}, same{}, of_p;
@@ -44,7 +44,7 @@ __attribute__((target("avx2"))) EdgeRim::Around look_around(const Corners& corne
 
 __attribute__((target("default")))
 #endif
-EdgeRim::Around
+CollapseNeighbourhood::Summary
 look_around(const Corners& corners, std::span<const std::uint32_t> p, const std::uint32_t* q) {
   std::uint32_t flags = 0;
   std::array<float, 4> sources;
@@ -65,9 +65,9 @@ look_around(const Corners& corners, std::span<const std::uint32_t> p, const std:
 
 }  // namespace
 
-EdgeRim::Around EdgeRim::set(const LargeArray<CollapseVertex>& vertices,
-                             std::span<const std::uint32_t> around_p,
-                             std::span<const std::uint32_t> around_q) {
+CollapseNeighbourhood::Summary CollapseNeighbourhood::set(const LargeArray<CollapseVertex>& vertices,
+                                                          std::span<const std::uint32_t> around_p,
+                                                          std::span<const std::uint32_t> around_q) {
   at_p_ = around_p.size() - 1;
   faces_ = at_p_ + around_q.size() - 1;
   const std::size_t corners = faces_ + 2;
