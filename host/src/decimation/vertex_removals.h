@@ -40,7 +40,7 @@ class VertexRemovals {
         vertices_(state.mesh.vertices),
         queue_(vertices_.size(), vertices_.size()) {
     due_.reserve(kStars);
-    if (state_.criteria != nullptr) holes_.shape = other_.shape = state_.criteria->shape_over_quadric();
+    if (state_.criteria != nullptr) batch_.shape = other_.shape = state_.criteria->shape_over_quadric();
     if constexpr (kAttributes) {
       state_.attributes->prepare(attributes_);
       state_.attributes->prepare(other_attributes_);
@@ -58,8 +58,9 @@ class VertexRemovals {
     const auto flush = [&] {
       errors.fill(kNone);
       stars_.walk(std::span(ids).first(count), [](std::uint32_t) {});
-      evaluate(
-          [&](const HoleStar& star, std::size_t lane) { errors[stars_.index_of(star)] = rank(star, lane); });
+      evaluate([&](const VertexStar& star, std::size_t lane) {
+        errors[stars_.index_of(star)] = rank(star, lane);
+      });
       for (std::size_t i = 0; i < count; ++i) {  // in the order of the input
         if (errors[i] < kNone)
           queue_.fill(ids[i], errors[i]);
@@ -89,7 +90,7 @@ class VertexRemovals {
     stars_.walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
     due_.clear();
     std::array<Removal*, kStars> in_order{};
-    evaluate([&](const HoleStar& star, std::size_t lane) {
+    evaluate([&](const VertexStar& star, std::size_t lane) {
       const float cost = rank(star, lane);
       if (!(cost < kNone))
         park(star.vertex, Legality::kFoldOver);
@@ -122,8 +123,8 @@ class VertexRemovals {
         if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.held_by_boundary;
       } else if (vertices_[v].has(CollapseVertex::kHasParked)) {
         stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
-        evaluate([&](const HoleStar& star, std::size_t lane) {
-          if (!(holes_.error[lane] < kNone)) return count(Legality::kFoldOver);
+        evaluate([&](const VertexStar& star, std::size_t lane) {
+          if (!(batch_.error[lane] < kNone)) return count(Legality::kFoldOver);
           Removal removal = removal_of(star, lane);
           if (!keeps_seams(star)) return count(Legality::kSeam);
           if (is_pillow(star)) return count(Legality::kLink);
@@ -137,8 +138,8 @@ class VertexRemovals {
  private:
   static constexpr float kNone = std::numeric_limits<float>::infinity();
   static constexpr std::size_t kStars = Queue::kExact ? 1 : 512;
-  static constexpr std::size_t kMost = HoleBatch::kMost;
-  static_assert(CollapseMesh::kMostAtHole >= kMost + 1);
+  static constexpr std::size_t kMost = RetriangulationBatch::kMost;
+  static_assert(CollapseMesh::kMaxHoleEdges >= kMost + 1);
 
   using Triangle = std::array<std::uint8_t, 3>;
   /// With what closes the boundary; each before those beyond its new edges.
@@ -153,7 +154,7 @@ class VertexRemovals {
     std::array<float, 3> share{};
   };
   struct Removal {
-    const HoleStar* star;
+    const VertexStar* star;
     float error, of_attributes;
     Triangles triangles;
     Heirs heirs;
@@ -167,82 +168,84 @@ class VertexRemovals {
 
   /// At which edge the face is whose place the first new triangle takes: triangles take those of their side,
   /// those of side 1 first.
-  [[nodiscard]] static std::size_t first_face([[maybe_unused]] const HoleStar& star) {
+  [[nodiscard]] static std::size_t first_face([[maybe_unused]] const VertexStar& star) {
     if constexpr (kAttributes)
       if (star.sides.split) return star.sides.last % (star.edges - 1);
     return 0;
   }
 
-  /// Calls use(star, lane) for all stars that were walked, with their holes filled in that lane of holes_.
+  /// Calls use(star, lane) for all stars that were walked, with their holes filled in that lane of batch_.
   template <class Use>
   void evaluate(Use&& use) {
     const std::span<const std::uint32_t> order = stars_.in_order();
     for (std::size_t n = 1; n <= kMost; ++n)
-      for (std::size_t from = stars_.first(n); from < stars_.first(n + 1); from += HoleBatch::kLanes) {
-        const std::size_t count = std::min(stars_.first(n + 1) - from, HoleBatch::kLanes);
-        set(holes_, attributes_, order.subspan(from, count));
+      for (std::size_t from = stars_.first(n); from < stars_.first(n + 1);
+           from += RetriangulationBatch::kLanes) {
+        const std::size_t count = std::min(stars_.first(n + 1) - from, RetriangulationBatch::kLanes);
+        set(batch_, attributes_, order.subspan(from, count));
         const std::size_t next = from + count;
-        for (const std::uint32_t i : order.subspan(next, std::min(order.size() - next, HoleBatch::kLanes))) {
-          const HoleStar& star = stars_[i];
+        for (const std::uint32_t i :
+             order.subspan(next, std::min(order.size() - next, RetriangulationBatch::kLanes))) {
+          const VertexStar& star = stars_[i];
           prefetch(&vertices_[star.vertex]);
           for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.target[k]]);
         }
-        fill(holes_, attributes_, n);
+        fill(batch_, attributes_, n);
         for (std::size_t lane = 0; lane < count; ++lane) use(stars_[order[from + lane]], lane);
       }
   }
 
   struct None {};
-  using Attributes = std::conditional_t<kAttributes, HoleAttributes, None>;
+  using Attributes = std::conditional_t<kAttributes, RetriangulationAttributes, None>;
 
-  void fill(HoleBatch& holes, Attributes& attributes, std::size_t neighbours) const {
+  void fill(RetriangulationBatch& batch, Attributes& attributes, std::size_t neighbours) const {
     if constexpr (kAttributes)
-      fill_holes(holes, neighbours, state_.limits.cos_deviation, &attributes);
+      retriangulate(batch, neighbours, state_.limits.cos_deviation, &attributes);
     else
-      fill_holes(holes, neighbours, state_.limits.cos_deviation);
+      retriangulate(batch, neighbours, state_.limits.cos_deviation);
   }
 
   /// Puts walked stars, all of as many neighbours, into the lanes from 0 on. Four records are turned at a
   /// time from rows to columns.
-  void set(HoleBatch& holes, [[maybe_unused]] Attributes& attributes,
+  void set(RetriangulationBatch& batch, [[maybe_unused]] Attributes& attributes,
            std::span<const std::uint32_t> walked) const {
     if constexpr (kAttributes)
       for (std::size_t lane = 0; lane < walked.size(); ++lane) {
-        const HoleStar& star = stars_[walked[lane]];
+        const VertexStar& star = stars_[walked[lane]];
         const std::size_t n = star.neighbours();
         state_.attributes->set(attributes, lane, star.all_edges(), n, star.sides);
         for (std::size_t b = 1; b < n; ++b)
           for (std::size_t a = 0; a < b; ++a)
-            holes.barred[HoleBatch::pair(a, b)][lane] = star.sides.cross(a, b) ? kNone : 0.0f;
+            batch.barred[RetriangulationBatch::pair(a, b)][lane] = star.sides.cross(a, b) ? kNone : 0.0f;
       }
     alignas(16) std::array<float, 4> unused;
     for (std::size_t lane = 0; lane < walked.size(); lane += 4) {
-      std::array<const HoleStar*, 4> stars;
+      std::array<const VertexStar*, 4> stars;
       std::array<const void*, 4> rows;
       for (std::size_t i = 0; i < 4; ++i) {
         stars[i] = &stars_[walked[std::min(lane + i, walked.size() - 1)]];
-        holes.closed[lane + i] = stars[i]->closed ? 1.0f : 0.0f;
+        batch.closed[lane + i] = stars[i]->closed ? 1.0f : 0.0f;
       }
       const auto words = [&](std::size_t from) {
         for (std::size_t i = 0; i < 4; ++i)
           rows[i] = reinterpret_cast<const char*>(&vertices_[stars[i]->vertex]) + 4 * from;
         return rows;
       };
-      const auto at = [&](HoleBatch::Lanes& lanes) { return &lanes[lane]; };
-      turn_four(words(0), {at(holes.v[0]), at(holes.v[1]), at(holes.v[2]), unused.data()});
-      turn_four(words(4), {at(holes.weight), at(holes.a[0]), at(holes.a[1]), at(holes.a[2])});
-      turn_four(words(8), {at(holes.a[3]), at(holes.a[4]), at(holes.a[5]), at(holes.c)});
-      turn_four(words(12), {at(holes.b[0]), at(holes.b[1]), at(holes.b[2]), unused.data()});
+      const auto at = [&](RetriangulationBatch::Lanes& lanes) { return &lanes[lane]; };
+      turn_four(words(0), {at(batch.v[0]), at(batch.v[1]), at(batch.v[2]), unused.data()});
+      turn_four(words(4), {at(batch.weight), at(batch.a[0]), at(batch.a[1]), at(batch.a[2])});
+      turn_four(words(8), {at(batch.a[3]), at(batch.a[4]), at(batch.a[5]), at(batch.c)});
+      turn_four(words(12), {at(batch.b[0]), at(batch.b[1]), at(batch.b[2]), unused.data()});
       for (std::size_t k = 0; k < stars[0]->neighbours(); ++k) {
         for (std::size_t i = 0; i < 4; ++i) rows[i] = &vertices_[stars[i]->target[k]];
-        turn_four(rows, {at(holes.ring[k][0]), at(holes.ring[k][1]), at(holes.ring[k][2]), unused.data()});
+        turn_four(rows, {at(batch.ring[k][0]), at(batch.ring[k][1]), at(batch.ring[k][2]), unused.data()});
       }
     }
   }
 
   /// Calls use(a, b) for the neighbours at the ends of each new edge.
   template <class Use>
-  static void for_new_edges(const HoleStar& star, const Triangles& triangles, Use&& use) {
+  static void for_new_edges(const VertexStar& star, const Triangles& triangles, Use&& use) {
     for (const auto& [a, b, c] : triangles.all()) {
       if (b > a + 1) use(a, b);
       if (c > b + 1 && c < star.neighbours()) use(b, c);
@@ -254,7 +257,7 @@ class VertexRemovals {
   void find_existing() {
     searches_.clear();
     for (Removal& removal : due_) {
-      const HoleStar& star = *removal.star;
+      const VertexStar& star = *removal.star;
       for (std::size_t i = 0; i < star.edges; ++i) prefetch(&mesh_.face(beyond(star, i)));  // to be joined
       for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {
         const std::uint32_t at = beyond(star, a > 0 ? a - 1 : star.edges - 1);
@@ -281,7 +284,7 @@ class VertexRemovals {
 
   /// Removes a vertex, if that is legal.
   void attempt(Removal& removal) {
-    const HoleStar& star = *removal.star;
+    const VertexStar& star = *removal.star;
     const std::uint32_t v = star.vertex;
     if (!keeps_seams(star)) return park(v, Legality::kSeam);
     if (too_far(v, removal.error)) return park(v, Legality::kError);
@@ -302,11 +305,11 @@ class VertexRemovals {
   }
 
   /// The faces across from v are one already: what is left would be a triangle on itself.
-  [[nodiscard]] bool is_pillow(const HoleStar& star) const {
+  [[nodiscard]] bool is_pillow(const VertexStar& star) const {
     return star.edges == 3 && (beyond(star, 0) >> 2) == (beyond(star, 1) >> 2);
   }
 
-  [[nodiscard]] bool keeps_seams([[maybe_unused]] const HoleStar& star) const {
+  [[nodiscard]] bool keeps_seams([[maybe_unused]] const VertexStar& star) const {
     if constexpr (kAttributes)
       return state_.attributes->wedges().keeps_seams(mesh_, star.all_edges(), star.sides);
     return true;
@@ -314,7 +317,7 @@ class VertexRemovals {
 
   /// Of a removal that makes no edge which is there.
   [[nodiscard]] Legality judge(const Removal& removal) {
-    const HoleStar& star = *removal.star;
+    const VertexStar& star = *removal.star;
     if (too_far(star.vertex, removal.error)) return Legality::kError;
     if (folds_over(star, removal.triangles)) return Legality::kFoldOver;
     const bool bound = state_.criteria != nullptr && state_.criteria->bounds();
@@ -322,8 +325,8 @@ class VertexRemovals {
   }
 
   /// What the queue holds a vertex under; kNone when it can not go.
-  [[nodiscard]] float rank(const HoleStar& star, std::size_t lane) {
-    const float error = holes_.error[lane];
+  [[nodiscard]] float rank(const VertexStar& star, std::size_t lane) {
+    const float error = batch_.error[lane];
     if (!(error < kNone)) return error;
     if (state_.criteria == nullptr || !state_.criteria->ranks())
       return error + error_of_attributes(attributes_, lane);
@@ -341,7 +344,7 @@ class VertexRemovals {
     return 0;
   }
 
-  [[nodiscard]] bool meets_criteria(const HoleStar& star, const Triangles& triangles) {
+  [[nodiscard]] bool meets_criteria(const VertexStar& star, const Triangles& triangles) {
     take_faces(star, triangles);
     std::array<std::size_t, kMost> gained{};
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) { ++gained[a], ++gained[b]; });
@@ -363,7 +366,7 @@ class VertexRemovals {
   }
 
   /// What a removal changes, into faces_: new faces get the records of the old ones in turn.
-  void take_faces(const HoleStar& star, const Triangles& triangles) {
+  void take_faces(const VertexStar& star, const Triangles& triangles) {
     faces_.clear();
     const DVec3 here = point_of(vertices_[star.vertex].position);
     faces_.inner_before.push_back(here);
@@ -393,7 +396,7 @@ class VertexRemovals {
 
   /// Fills the hole again, without the edges that the mesh has already.
   void avoid_existing(Removal& removal) {
-    const HoleStar& star = *removal.star;
+    const VertexStar& star = *removal.star;
     const auto walked = static_cast<std::uint32_t>(stars_.index_of(star));
     set(other_, other_attributes_, std::span(&walked, 1));
     while (bar_existing(star, removal.triangles)) {
@@ -412,21 +415,21 @@ class VertexRemovals {
   }
 
   /// Beyond the face between neighbour i and the next.
-  [[nodiscard]] std::uint32_t beyond(const HoleStar& star, std::size_t i) const {
+  [[nodiscard]] std::uint32_t beyond(const VertexStar& star, std::size_t i) const {
     return mesh_.twin(CollapseMesh::next(star.edge[i]));
   }
 
-  [[nodiscard]] Removal removal_of(const HoleStar& star, std::size_t lane) const {
+  [[nodiscard]] Removal removal_of(const VertexStar& star, std::size_t lane) const {
     return {&star,
-            holes_.error[lane],
+            batch_.error[lane],
             error_of_attributes(attributes_, lane),
-            triangles_of(holes_, lane, star),
-            heirs_of(holes_, lane, star),
+            triangles_of(batch_, lane, star),
+            heirs_of(batch_, lane, star),
             false};
   }
 
-  [[nodiscard]] static Triangles triangles_of(const HoleBatch& holes, std::size_t lane,
-                                              const HoleStar& star) {
+  [[nodiscard]] static Triangles triangles_of(const RetriangulationBatch& batch, std::size_t lane,
+                                              const VertexStar& star) {
     Triangles triangles;
     std::array<std::array<std::uint8_t, 2>, kMost> parts;
     std::size_t left = 0;
@@ -435,7 +438,7 @@ class VertexRemovals {
     if (last > 1) parts[left++] = {0, last};
     while (left > 0) {
       const auto [a, c] = parts[--left];
-      const auto b = static_cast<std::uint8_t>(holes.third[HoleBatch::pair(a, c)][lane]);
+      const auto b = static_cast<std::uint8_t>(batch.third[RetriangulationBatch::pair(a, c)][lane]);
       triangles.of[triangles.count++] = {a, b, c};
       if (b > a + 1) parts[left++] = {a, b};
       if (c > b + 1) parts[left++] = {b, c};
@@ -448,11 +451,11 @@ class VertexRemovals {
   }
 
   /// Bars each new edge that the mesh has already in other_; whether there was one.
-  bool bar_existing(const HoleStar& star, const Triangles& triangles) {
+  bool bar_existing(const VertexStar& star, const Triangles& triangles) {
     bool found = false;
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) {
       if (!has_edge(star.target[a], star.target[b])) return;
-      other_.barred[HoleBatch::pair(a, b)][0] = kNone;
+      other_.barred[RetriangulationBatch::pair(a, b)][0] = kNone;
       found = true;
     });
     return found;
@@ -485,7 +488,7 @@ class VertexRemovals {
 
   /// Whether two neighbouring triangles stand against each other by more than 120 degrees and by more than
   /// any did before.
-  [[nodiscard]] bool folds_over(const HoleStar& star, const Triangles& triangles) const {
+  [[nodiscard]] bool folds_over(const VertexStar& star, const Triangles& triangles) const {
     constexpr double kAgainst2 = 0.25;  // the cosine, squared
     const std::size_t n = star.neighbours();
     std::array<Vector, kMost> normals;
@@ -521,7 +524,7 @@ class VertexRemovals {
   }
 
   void remove(const Removal& removal) {
-    const HoleStar& star = *removal.star;
+    const VertexStar& star = *removal.star;
     CollapseVertex& gone = vertices_[star.vertex];
     std::uint32_t heir = 0;
     float most = 0;
@@ -576,7 +579,7 @@ class VertexRemovals {
 
   /// The new faces, which are in the mesh, as part of the step that is next.
   void keep_faces(const Removal& removal) {
-    const HoleStar& star = *removal.star;
+    const VertexStar& star = *removal.star;
     const auto step = static_cast<std::uint32_t>(state_.outcome.events.size());
     std::size_t taken = first_face(star);
     for (const auto& corners : removal.triangles.all()) {
@@ -606,7 +609,8 @@ class VertexRemovals {
 
   /// The corners of the triangle that holds v, by v's place in it; on a boundary or seam the ends of the new
   /// edge, by the point nearest to v.
-  [[nodiscard]] Heirs heirs_of(const HoleBatch& holes, std::size_t lane, const HoleStar& star) const {
+  [[nodiscard]] Heirs heirs_of(const RetriangulationBatch& batch, std::size_t lane,
+                               const VertexStar& star) const {
     std::size_t a = 0, c = star.neighbours() - 1;
     bool on_curve = !star.closed;
     if constexpr (kAttributes) {
@@ -619,8 +623,8 @@ class VertexRemovals {
     if (on_curve) {
       float along = 0, squared = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const float d = holes.ring[c][k][lane] - holes.ring[0][k][lane];
-        along -= (holes.ring[0][k][lane] - holes.v[k][lane]) * d;
+        const float d = batch.ring[c][k][lane] - batch.ring[0][k][lane];
+        along -= (batch.ring[0][k][lane] - batch.v[k][lane]) * d;
         squared += d * d;
       }
       const float t = squared > 0 ? std::clamp(along / squared, 0.0f, 1.0f) : 0.0f;
@@ -628,16 +632,16 @@ class VertexRemovals {
       return heirs;
     }
     while (true) {
-      const std::size_t ac = HoleBatch::pair(a, c);
-      const auto b = static_cast<std::size_t>(holes.third[ac][lane]);
-      const float at_a = holes.left[HoleBatch::pair(b, c)][lane],
-                  at_c = holes.left[HoleBatch::pair(a, b)][lane];
+      const std::size_t ac = RetriangulationBatch::pair(a, c);
+      const auto b = static_cast<std::size_t>(batch.third[ac][lane]);
+      const float at_a = batch.left[RetriangulationBatch::pair(b, c)][lane],
+                  at_c = batch.left[RetriangulationBatch::pair(a, b)][lane];
       if (at_c < 0) {
         c = b;
       } else if (at_a < 0) {
         a = b;
       } else {
-        const float at_b = std::max(-holes.left[ac][lane], 0.0f), sum = at_a + at_b + at_c;
+        const float at_b = std::max(-batch.left[ac][lane], 0.0f), sum = at_a + at_b + at_c;
         heirs.neighbour = {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
                            static_cast<std::uint8_t>(c)};
         heirs.share = {1, 0, 0};
@@ -663,9 +667,9 @@ class VertexRemovals {
   CollapseMesh& mesh_;
   LargeArray<CollapseVertex>& vertices_;
   Queue queue_;
-  HoleStars<kStars> stars_{mesh_, kAttributes ? &state_.attributes->wedges() : nullptr};
-  HoleBatch holes_, other_;
-  [[no_unique_address]] Attributes attributes_;  // at holes_
+  VertexStars<kStars> stars_{mesh_, kAttributes ? &state_.attributes->wedges() : nullptr};
+  RetriangulationBatch batch_, other_;
+  [[no_unique_address]] Attributes attributes_;  // at batch_
   [[no_unique_address]] Attributes other_attributes_;
   Star faces_;  // that the removal changes which is looked at
   std::vector<Removal> due_;

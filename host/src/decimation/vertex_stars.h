@@ -16,8 +16,8 @@ namespace vkmesh::detail {
 
 /// What leaves a vertex counter-clockwise, and where to. A boundary vertex has the apex at the end of the
 /// last.
-struct HoleStar {
-  static constexpr std::size_t kMost = HoleBatch::kMost;  // neighbours
+struct VertexStar {
+  static constexpr std::size_t kMost = RetriangulationBatch::kMost;  // neighbours
 
   std::uint32_t vertex, edges;  // edges: how many
   bool closed;
@@ -30,10 +30,10 @@ struct HoleStar {
 
 /// The stars of up to kStars vertices.
 template <std::size_t kStars>
-class HoleStars {
+class VertexStars {
  public:
   /// `wedges`: none without attributes.
-  HoleStars(const CollapseMesh& mesh, const Wedges* wedges)
+  VertexStars(const CollapseMesh& mesh, const Wedges* wedges)
       : mesh_(mesh), vertices_(mesh.vertices), wedges_(wedges) {}
 
   /// Walks around these vertices, one step of each in turn: one waits for all. Puts their stars in
@@ -55,7 +55,7 @@ class HoleStars {
       left = 0;
       for (std::size_t i = 0; i < now; ++i) {
         const std::uint32_t h = at[i], out = mesh_.around_vertex(h), v = mesh_.target(h);
-        HoleStar& star = walked_[who[i]];
+        VertexStar& star = walked_[who[i]];
         prefetch(&vertices_[v]);
         prefetch(&mesh_.face(out));
         star.edge[step] = h;
@@ -71,7 +71,7 @@ class HoleStars {
     for (std::size_t i = 0; i < left; ++i) walked_[who[i]].edges = kTooMany;
     std::array<std::uint32_t, kMost + 2> first{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      HoleStar& star = walked_[i];
+      VertexStar& star = walked_[i];
       if (star.edges == kTooMany || star.neighbours() > kMost) {
         star.edges = kTooMany;
         has_too_many(star.vertex);
@@ -89,11 +89,11 @@ class HoleStars {
   }
 
   /// Of a star among the vertices that were walked around.
-  [[nodiscard]] std::size_t index_of(const HoleStar& star) const {
+  [[nodiscard]] std::size_t index_of(const VertexStar& star) const {
     return static_cast<std::size_t>(&star - walked_.data());
   }
 
-  [[nodiscard]] const HoleStar& operator[](std::size_t index) const { return walked_[index]; }
+  [[nodiscard]] const VertexStar& operator[](std::size_t index) const { return walked_[index]; }
   /// Indices in order of the numbers of neighbours, but for those of too many. Those of n neighbours begin at
   /// first(n), up to first(n + 1).
   [[nodiscard]] std::span<const std::uint32_t> in_order() const {
@@ -102,20 +102,20 @@ class HoleStars {
   [[nodiscard]] std::size_t first(std::size_t neighbours) const { return first_[neighbours]; }
 
  private:
-  static constexpr std::size_t kMost = HoleStar::kMost;
+  static constexpr std::size_t kMost = VertexStar::kMost;
   static constexpr std::uint32_t kTooMany = ~0u;
 
-  void put_apex_last(HoleStar& star) const {
+  void put_apex_last(VertexStar& star) const {
     const auto end = star.target.begin() + star.edges;
     begin_at(star, std::find(star.target.begin(), end, mesh_.apex()) - star.target.begin() + 1);
   }
-  static void begin_at(HoleStar& star, std::ptrdiff_t i) {
+  static void begin_at(VertexStar& star, std::ptrdiff_t i) {
     std::rotate(star.target.begin(), star.target.begin() + i, star.target.begin() + star.edges);
     std::rotate(star.edge.begin(), star.edge.begin() + i, star.edge.begin() + star.edges);
   }
 
   /// By the seam through the vertex, if any; the first edge is then of it.
-  void find_sides(HoleStar& star) const {
+  void find_sides(VertexStar& star) const {
     const auto is_seam = [&](std::uint32_t h) { return wedges_->is_seam(mesh_, h); };
     if (wedges_->on_seam(star.vertex))
       begin_at(star,
@@ -126,7 +126,7 @@ class HoleStars {
   const CollapseMesh& mesh_;
   const LargeArray<CollapseVertex>& vertices_;
   const Wedges* wedges_;
-  std::array<HoleStar, kStars> walked_;
+  std::array<VertexStar, kStars> walked_;
   std::array<std::uint32_t, kStars> order_;
   std::array<std::uint32_t, kMost + 2> first_{};  // of each number of neighbours, in order_
 };

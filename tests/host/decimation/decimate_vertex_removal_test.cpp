@@ -21,7 +21,7 @@
 namespace vkmesh {
 namespace {
 
-using detail::HoleAttributes, detail::HoleBatch;
+using detail::RetriangulationAttributes, detail::RetriangulationBatch;
 
 Decimated run(const IndexedFaceSet& mesh, DecimateOptions options) {
   options.operation = DecimateOperation::kVertexRemoval;
@@ -254,7 +254,7 @@ void put_quadric(const Star& star, std::size_t lane, Batch& batch) {
   batch.c[lane] = static_cast<float>(c);
 }
 
-void put(const Star& star, std::size_t lane, HoleBatch& batch) {
+void put(const Star& star, std::size_t lane, RetriangulationBatch& batch) {
   for (std::size_t i = 0; i < star.size(); ++i)
     for (int k = 0; k < 3; ++k)
       batch.ring[i][static_cast<std::size_t>(k)][lane] = static_cast<float>(star.ring[i][k]);
@@ -262,22 +262,22 @@ void put(const Star& star, std::size_t lane, HoleBatch& batch) {
   batch.closed[lane] = star.closed ? 1.0f : 0.0f;
 }
 
-void put(const Star& star, const Attributes& attributes, std::size_t lane, HoleBatch& batch,
-         HoleAttributes& holes) {
+void put(const Star& star, const Attributes& attributes, std::size_t lane, RetriangulationBatch& batch,
+         RetriangulationAttributes& attribute_batch) {
   put(star, lane, batch);
-  put_quadric(attributes.left, lane, holes);
-  holes.split[lane] = star.seam > 0 ? 1 : 0;
+  put_quadric(attributes.left, lane, attribute_batch);
+  attribute_batch.split[lane] = star.seam > 0 ? 1 : 0;
   const std::size_t last = star.seam > 0 ? star.seam : star.size() - 1;
-  holes.last[lane] = static_cast<std::int32_t>(last);
+  attribute_batch.last[lane] = static_cast<std::int32_t>(last);
   for (std::size_t b = 1; b < star.size(); ++b)
     for (std::size_t a = 0; a < b; ++a)
-      batch.barred[HoleBatch::pair(a, b)][lane] =
+      batch.barred[RetriangulationBatch::pair(a, b)][lane] =
           star.seam > 0 && a > 0 && a < last && b > last ? HUGE_VALF : 0.0f;
   for (std::size_t side = 0; side < 2; ++side) {
-    holes.weight[side][lane] = static_cast<float>(attributes.weight[side]);
+    attribute_batch.weight[side][lane] = static_cast<float>(attributes.weight[side]);
     for (std::size_t k = 0; k < attributes.all.size(); ++k) {
       const Attribute::OnSide& on = attributes.all[k].side[side];
-      HoleAttributes::OnSide& out = holes.components[k].side[side];
+      RetriangulationAttributes::OnSide& out = attribute_batch.components[k].side[side];
       out.off[lane] = static_cast<float>(on.off);
       for (int j = 0; j < 3; ++j)
         out.gradient[static_cast<std::size_t>(j)][lane] = static_cast<float>(on.gradient[j]);
@@ -286,10 +286,10 @@ void put(const Star& star, const Attributes& attributes, std::size_t lane, HoleB
   }
 }
 
-Triangulation triangulation_in(const HoleBatch& batch, std::size_t lane, std::size_t first,
+Triangulation triangulation_in(const RetriangulationBatch& batch, std::size_t lane, std::size_t first,
                                std::size_t last) {
   if (last == first + 1) return {};
-  const auto middle = static_cast<std::size_t>(batch.third[HoleBatch::pair(first, last)][lane]);
+  const auto middle = static_cast<std::size_t>(batch.third[RetriangulationBatch::pair(first, last)][lane]);
   Triangulation all = triangulation_in(batch, lane, first, middle);
   const Triangulation right = triangulation_in(batch, lane, middle, last);
   all.insert(all.end(), right.begin(), right.end());
@@ -325,19 +325,19 @@ Star random_star(std::size_t n, bool closed, std::mt19937& random) {
 
 TEST_CASE("decimation: a hole is filled with the best of all triangulations", "[decimate]") {
   std::mt19937 random(5);
-  HoleBatch batch;
+  RetriangulationBatch batch;
   std::size_t compared = 0, impossible = 0;
   for (std::size_t n = 3; n <= 8; ++n) {
     const std::vector<Triangulation> all = all_triangulations(0, n - 1);
     for (int round = 0; round < 60; ++round) {
       std::vector<Star> stars;
-      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
         stars.push_back(random_star(n, random() % 3 != 0, random));
         put(stars.back(), lane, batch);
       }
       const double cos_deviation = round % 2 == 0 ? 0.25 : 0.8;
-      detail::fill_holes(batch, n, static_cast<float>(cos_deviation));
-      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      detail::retriangulate(batch, n, static_cast<float>(cos_deviation));
+      for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
         const Star& star = stars[lane];
         double margin = 1;
         const Seen seen(star.up());
@@ -380,17 +380,17 @@ TEST_CASE("decimation: attributes take part in which triangulation is the best, 
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
   };
-  HoleBatch batch;
-  HoleAttributes holes;
+  RetriangulationBatch batch;
+  RetriangulationAttributes attribute_batch;
   constexpr std::array<double, 2> kCosts = {1, 0.3};
-  for (const double cost : kCosts) holes.components.emplace_back().cost = static_cast<float>(cost);
+  for (const double cost : kCosts) attribute_batch.components.emplace_back().cost = static_cast<float>(cost);
   std::size_t within = 0, boundary = 0, on_seam = 0, decided = 0;
   for (std::size_t n = 3; n <= 7; ++n) {
     const std::vector<Triangulation> all = all_triangulations(0, n - 1);
     for (int round = 0; round < (test::kSanitized ? 10 : 60); ++round) {
       std::vector<Star> stars;
       std::vector<Attributes> attributes;
-      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
         Star star = random_star(n, random() % 3 != 0, random);
         if (star.closed && random() % 2 == 0) star.seam = 1 + random() % (n - 1);
         Attributes at;
@@ -405,12 +405,12 @@ TEST_CASE("decimation: attributes take part in which triangulation is the best, 
         at.weight = {uniform(0, 2), uniform(0, 2)};
         const DVec3 normal(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
         at.left.planes = {{normal, uniform(-0.1, 0.1), uniform(0, 0.5)}};
-        put(star, at, lane, batch, holes);
+        put(star, at, lane, batch, attribute_batch);
         stars.push_back(std::move(star));
         attributes.push_back(std::move(at));
       }
-      detail::fill_holes(batch, n, 0.25f, &holes);
-      for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+      detail::retriangulate(batch, n, 0.25f, &attribute_batch);
+      for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
         const Star& star = stars[lane];
         double margin = 1, least = HUGE_VAL, least_without = HUGE_VAL;
         const Triangulation* plain = nullptr;
@@ -438,9 +438,10 @@ TEST_CASE("decimation: attributes take part in which triangulation is the best, 
                      by_length = 1e-7 * star.area() * 9 * static_cast<double>(n);
         const Triangulation found = triangulation_in(batch, lane, 0, n - 1);
         CHECK(batch.error[lane] == Approx(error_of(star, found, 0.25, margin)).margin(rounding));
-        CHECK(holes.error[lane] == Approx(error_of(star, attributes[lane], found)).margin(rounding));
-        CHECK(batch.error[lane] + holes.error[lane] >= least - rounding);
-        CHECK(batch.error[lane] + holes.error[lane] <= least + rounding + by_length);
+        CHECK(attribute_batch.error[lane] ==
+              Approx(error_of(star, attributes[lane], found)).margin(rounding));
+        CHECK(batch.error[lane] + attribute_batch.error[lane] >= least - rounding);
+        CHECK(batch.error[lane] + attribute_batch.error[lane] <= least + rounding + by_length);
         ++(star.seam > 0 ? on_seam : star.closed ? within : boundary);
         if (least_without + error_of(star, attributes[lane], *plain) > 1.01 * least) ++decided;
       }
@@ -679,29 +680,30 @@ TEST_CASE("decimation: an edge that is barred is not made, and a lane knows noth
   std::mt19937 random(8);
   for (std::size_t n = 4; n <= 9; ++n) {
     std::vector<Star> stars;
-    HoleBatch one, other;
-    for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
+    RetriangulationBatch one, other;
+    for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
       stars.push_back(random_star(n, lane % 3 != 0, random));
       put(stars[lane], lane, one);
-      put(stars[lane], HoleBatch::kLanes - 1 - lane, other);
+      put(stars[lane], RetriangulationBatch::kLanes - 1 - lane, other);
     }
-    detail::fill_holes(one, n, -0.99f);
-    detail::fill_holes(other, n, -0.99f);
-    for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
-      const std::size_t mirrored = HoleBatch::kLanes - 1 - lane;
+    detail::retriangulate(one, n, -0.99f);
+    detail::retriangulate(other, n, -0.99f);
+    for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
+      const std::size_t mirrored = RetriangulationBatch::kLanes - 1 - lane;
       CHECK(one.error[lane] == other.error[mirrored]);
       const Triangulation found = triangulation_in(one, lane, 0, n - 1);
       CHECK(found == triangulation_in(other, mirrored, 0, n - 1));
       for (const auto& [a, b, c] : found)
-        if (c > a + 1 && !(a == 0 && c + 1 == n)) other.barred[HoleBatch::pair(a, c)][mirrored] = HUGE_VALF;
+        if (c > a + 1 && !(a == 0 && c + 1 == n))
+          other.barred[RetriangulationBatch::pair(a, c)][mirrored] = HUGE_VALF;
     }
-    detail::fill_holes(other, n, -0.99f);
-    for (std::size_t lane = 0; lane < HoleBatch::kLanes; ++lane) {
-      const std::size_t mirrored = HoleBatch::kLanes - 1 - lane;
+    detail::retriangulate(other, n, -0.99f);
+    for (std::size_t lane = 0; lane < RetriangulationBatch::kLanes; ++lane) {
+      const std::size_t mirrored = RetriangulationBatch::kLanes - 1 - lane;
       CHECK(other.error[mirrored] >= one.error[lane] * (1 - 1e-5f));
       if (!(other.error[mirrored] < HUGE_VALF)) continue;
       for (const auto& [a, b, c] : triangulation_in(other, mirrored, 0, n - 1))
-        CHECK(other.barred[HoleBatch::pair(a, c)][mirrored] == 0);
+        CHECK(other.barred[RetriangulationBatch::pair(a, c)][mirrored] == 0);
     }
   }
 }

@@ -309,24 +309,25 @@ void AttributeQuadrics::join(std::uint32_t wedge_p, std::uint32_t wedge_q, float
   weight_[wedge_p] += weight_q;
 }
 
-void AttributeQuadrics::prepare(HoleAttributes& holes) const {
-  for (const Component& component : components_) holes.components.emplace_back().cost = component.cost;
+void AttributeQuadrics::prepare(RetriangulationAttributes& batch) const {
+  for (const Component& component : components_) batch.components.emplace_back().cost = component.cost;
 }
 
-void AttributeQuadrics::set(HoleAttributes& holes, std::size_t lane, std::span<const std::uint32_t> edges,
-                            std::size_t neighbours, const SeamSides& sides) const {
+void AttributeQuadrics::set(RetriangulationAttributes& batch, std::size_t lane,
+                            std::span<const std::uint32_t> edges, std::size_t neighbours,
+                            const SeamSides& sides) const {
   const std::size_t n = components_.size();
   const CollapseVertex& left = apart_[mesh_.origin(edges[0])];
-  for (std::size_t k = 0; k < 6; ++k) holes.a[k][lane] = left.a[k];
-  for (std::size_t k = 0; k < 3; ++k) holes.b[k][lane] = left.b[k];
-  holes.c[lane] = left.c;
-  holes.last[lane] = static_cast<std::int32_t>(sides.last);
-  holes.split[lane] = sides.split ? 1 : 0;
+  for (std::size_t k = 0; k < 6; ++k) batch.a[k][lane] = left.a[k];
+  for (std::size_t k = 0; k < 3; ++k) batch.b[k][lane] = left.b[k];
+  batch.c[lane] = left.c;
+  batch.last[lane] = static_cast<std::int32_t>(sides.last);
+  batch.split[lane] = sides.split ? 1 : 0;
   for (std::size_t side = 0; side < sides.count(); ++side) {
     const std::uint32_t own = wedges_.on_side(edges, sides, side);
-    holes.weight[side][lane] = weight_[own];
+    batch.weight[side][lane] = weight_[own];
     for (std::size_t k = 0; k < n; ++k) {
-      HoleAttributes::OnSide& on_side = holes.components[k].side[side];
+      RetriangulationAttributes::OnSide& on_side = batch.components[k].side[side];
       const Function& mean = function_[own * n + k];
       on_side.off[lane] = mean.value - value_[own * n + k];
       for (std::size_t j = 0; j < 3; ++j) on_side.gradient[j][lane] = mean.gradient[j];
@@ -335,7 +336,7 @@ void AttributeQuadrics::set(HoleAttributes& holes, std::size_t lane, std::span<c
       if (!sides.has(side, i)) continue;
       const std::uint32_t wedge = wedges_.of_neighbour(edges, sides, side, i);
       for (std::size_t k = 0; k < n; ++k)
-        holes.components[k].side[side].ring[i][lane] = value_[wedge * n + k] - value_[own * n + k];
+        batch.components[k].side[side].ring[i][lane] = value_[wedge * n + k] - value_[own * n + k];
     }
   }
 }

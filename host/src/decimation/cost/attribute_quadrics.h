@@ -64,9 +64,9 @@ class AttributeQuadrics {
                 const std::array<float, 3>& move_kept);
 
   /// Room for the components.
-  void prepare(HoleAttributes& holes) const;
+  void prepare(RetriangulationAttributes& batch) const;
   /// Puts what is known of the vertex that `edges` leave, see Wedges::sides, into a lane.
-  void set(HoleAttributes& holes, std::size_t lane, std::span<const std::uint32_t> edges,
+  void set(RetriangulationAttributes& batch, std::size_t lane, std::span<const std::uint32_t> edges,
            std::size_t neighbours, const SeamSides& sides) const;
   /// Gives a share of what the vertex stands for to one of its neighbours; of a vertex on a seam, to one at
   /// an end of the new seam edge.

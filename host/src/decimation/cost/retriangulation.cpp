@@ -22,9 +22,10 @@
 namespace vkmesh::detail {
 namespace {
 
-constexpr std::size_t kLanes = HoleBatch::kLanes, kMost = HoleBatch::kMost, kPairs = HoleBatch::kPairs;
-constexpr std::size_t kTriples = HoleAttributes::kTriples;
-using Lanes = HoleBatch::Lanes;
+constexpr std::size_t kLanes = RetriangulationBatch::kLanes, kMost = RetriangulationBatch::kMost,
+                      kPairs = RetriangulationBatch::kPairs;
+constexpr std::size_t kTriples = RetriangulationAttributes::kTriples;
+using Lanes = RetriangulationBatch::Lanes;
 using Flags = std::array<std::int32_t, kLanes>;
 
 /// A triangle of less area than this share of its squared sides has no reliable normal; as in folds_over.
@@ -41,7 +42,7 @@ constexpr float kRounding = 1.0f / (1 << 21);
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 constexpr std::size_t pair(std::size_t a, std::size_t b) {
-  return HoleBatch::pair(a, b);
+  return RetriangulationBatch::pair(a, b);
 }
 /// Of a < b < c: c is the slowest to rise, then b.
 constexpr std::size_t triple(std::size_t a, std::size_t b, std::size_t c) {
@@ -71,7 +72,7 @@ struct alignas(64) Work {
 };
 
 // Scaled by a power of two, so that no product leaves the range of a float.
-void scale_ring(const HoleBatch& batch, Work& w) {
+void scale_ring(const RetriangulationBatch& batch, Work& w) {
   alignas(64) Lanes largest{};
   for (std::size_t i = 0; i < w.n; ++i) VKMESH_LANES(l) {
       const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
@@ -115,7 +116,7 @@ void cross_all(Work& w) {
 }
 
 // The faces of v. What is the last where v lies on the boundary, is none, of no area.
-void find_faces(const HoleBatch& batch, Work& w, float square_cos) {
+void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
   const std::size_t n = w.n;
   for (std::size_t k = 0; k < 3; ++k) {
     w.up[k].fill(0);
@@ -165,7 +166,7 @@ void find_faces(const HoleBatch& batch, Work& w, float square_cos) {
 }
 
 // On which side of each edge v lies; around it the ring goes once at most.
-void find_sides(HoleBatch& batch, Work& w) {
+void find_sides(RetriangulationBatch& batch, Work& w) {
   const std::size_t n = w.n;
   for (std::size_t j = 1; j < n; ++j)
     for (std::size_t i = 0; i < j; ++i) {
@@ -206,7 +207,7 @@ struct Curve {
 };
 
 // The quadric along the normal, and on the new edge of a boundary or seam.
-void find_quadric(const HoleBatch& batch, const Curve& curve, Work& w) {
+void find_quadric(const RetriangulationBatch& batch, const Curve& curve, Work& w) {
   VKMESH_LANES(l) {
     const float x = w.up[0][l], y = w.up[1][l], z = w.up[2][l];
     const float a0 = batch.a[0][l], a1 = batch.a[1][l], a2 = batch.a[2][l], a3 = batch.a[3][l],
@@ -241,7 +242,7 @@ constexpr unsigned kAB = 1, kBC = 2, kCA = 4;
 /// What the triangle costs, and the new edges by what lies across them. All in registers: a mask that is
 /// stored and loaded again in another shape would wait for memory.
 template <unsigned kSides>
-[[gnu::always_inline]] inline void judge_triangle(const HoleBatch& batch, Work& w, std::size_t a,
+[[gnu::always_inline]] inline void judge_triangle(const RetriangulationBatch& batch, Work& w, std::size_t a,
                                                   std::size_t b, std::size_t c, std::size_t abc) {
   const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c), last = w.n - 1;
   VKMESH_LANES(l) {
@@ -282,15 +283,15 @@ template <unsigned kSides>
 }
 
 template <unsigned kSides = 0>
-void judge(const HoleBatch& batch, Work& w, unsigned sides, std::size_t a, std::size_t b, std::size_t c,
-           std::size_t abc) {
+void judge(const RetriangulationBatch& batch, Work& w, unsigned sides, std::size_t a, std::size_t b,
+           std::size_t c, std::size_t abc) {
   if (kSides == (kAB | kBC | kCA) || sides == kSides)
     judge_triangle<kSides>(batch, w, a, b, c, abc);
   else if constexpr (kSides < (kAB | kBC | kCA))
     judge<kSides + 1>(batch, w, sides, a, b, c, abc);
 }
 
-void judge_all(const HoleBatch& batch, Work& w) {
+void judge_all(const RetriangulationBatch& batch, Work& w) {
   std::size_t abc = 0;
   for (std::size_t c = 2; c < w.n; ++c)
     for (std::size_t b = 1; b < c; ++b)
@@ -302,7 +303,7 @@ void judge_all(const HoleBatch& batch, Work& w) {
 }
 
 // What the shapes of triangles count.
-void add_shapes(const HoleBatch& batch, Work& w) {
+void add_shapes(const RetriangulationBatch& batch, Work& w) {
   constexpr float kEquilateral = 1.1547005f;  // twice the area over the squared side, inverted
   alignas(64) Lanes most{};
   for (std::size_t i = 0; i < w.n; ++i) VKMESH_LANES(l) {
@@ -329,7 +330,8 @@ void add_shapes(const HoleBatch& batch, Work& w) {
 }
 
 // Where the new edges of boundaries and seams end, which begin at the first neighbour.
-void find_curves(const HoleBatch& batch, const HoleAttributes& attributes, Vectors& to, Lanes& is_none) {
+void find_curves(const RetriangulationBatch& batch, const RetriangulationAttributes& attributes, Vectors& to,
+                 Lanes& is_none) {
   for (std::size_t l = 0; l < kLanes; ++l) {
     is_none[l] = attributes.split[l] != 0 ? 0.0f : batch.closed[l];
     for (std::size_t k = 0; k < 3; ++k)
@@ -339,7 +341,8 @@ void find_curves(const HoleBatch& batch, const HoleAttributes& attributes, Vecto
 
 // What it costs where a neighbour takes over all that v stands for; on the new edge of a boundary or seam,
 // where both ends take their shares.
-void find_heirs(const HoleBatch& batch, const Curve& curve, const Work& w, HoleAttributes& attributes) {
+void find_heirs(const RetriangulationBatch& batch, const Curve& curve, const Work& w,
+                RetriangulationAttributes& attributes) {
   const auto& a = attributes.a;
   const auto& b = attributes.b;
   for (std::size_t i = 0; i < w.n; ++i) {
@@ -379,7 +382,8 @@ void find_heirs(const HoleBatch& batch, const Curve& curve, const Work& w, HoleA
 }
 
 // What attributes make of each triangle, and of the new edges by what lies across them.
-void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleAttributes& attributes) {
+void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Work& w,
+                      RetriangulationAttributes& attributes) {
   const std::size_t n = w.n;
   for (std::size_t ij = 0; ij < pair(0, n); ++ij) {
     attributes.inside[ij].fill(0);
@@ -403,7 +407,7 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
           counts[l] = ((ic <= last) | (((ia == 0) | (ia >= last)) & (ib >= last))) ? 1.0f : 0.0f;
         }
         for (const auto& component : attributes.components) {
-          const HoleAttributes::OnSide &one = component.side[0], &other = component.side[1];
+          const RetriangulationAttributes::OnSide &one = component.side[0], &other = component.side[1];
           VKMESH_LANES(l) {
             const bool is_one = on_first[l] != 0;
             const float at_a = is_one ? one.ring[a][l] : other.ring[a][l],
@@ -444,7 +448,7 @@ void judge_attributes(const HoleBatch& batch, const Curve& curve, Work& w, HoleA
 }
 
 // Of the triangulations that were chosen.
-void sum_attributes(const HoleBatch& batch, const Work& w, HoleAttributes& attributes) {
+void sum_attributes(const RetriangulationBatch& batch, const Work& w, RetriangulationAttributes& attributes) {
   std::array<std::pair<std::size_t, std::size_t>, kMost> parts;
   for (std::size_t l = 0; l < kLanes; ++l) {
     if (!(batch.error[l] < kNone)) continue;
@@ -465,7 +469,7 @@ void sum_attributes(const HoleBatch& batch, const Work& w, HoleAttributes& attri
 
 /// The best of kCount third corners from `from` on, and of those before when these are not the first.
 template <std::size_t kCount, bool kAreFirst>
-[[gnu::always_inline]] inline void choose(HoleBatch& batch, Work& w, std::size_t a, std::size_t c,
+[[gnu::always_inline]] inline void choose(RetriangulationBatch& batch, Work& w, std::size_t a, std::size_t c,
                                           std::size_t from) {
   const std::size_t ac = pair(a, c);
   VKMESH_LANES(l) {
@@ -493,7 +497,7 @@ template <std::size_t kCount, bool kAreFirst>
 
 // The best of each part between two neighbours.
 template <bool kAttributes>
-void choose_all(HoleBatch& batch, Work& w, const HoleAttributes* attributes) {
+void choose_all(RetriangulationBatch& batch, Work& w, const RetriangulationAttributes* attributes) {
   const std::size_t n = w.n, root = pair(0, n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     w.best[pair(i, i + 1)].fill(0);
@@ -533,8 +537,8 @@ void choose_all(HoleBatch& batch, Work& w, const HoleAttributes* attributes) {
 }  // namespace
 
 // Each loop over lanes is one over vector registers.
-VKMESH_FLAT_CLONES void fill_holes(HoleBatch& batch, std::size_t neighbours, float cos_deviation,
-                                   HoleAttributes* attributes) {
+VKMESH_FLAT_CLONES void retriangulate(RetriangulationBatch& batch, std::size_t neighbours,
+                                      float cos_deviation, RetriangulationAttributes* attributes) {
   Work w;
   w.n = neighbours;
   scale_ring(batch, w);

@@ -1,4 +1,4 @@
-// The holes that vertices leave behind, and how to fill them best.
+// Holes that vertices leave behind, and how to fill them best.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ namespace vkmesh::detail {
 /// what a collapse into it costs. Where a seam runs through v, the new edge between its ends is made, and v
 /// goes to the nearest point of it, whose ends take over, as a vertex of the boundary does; each side has
 /// values and mean functions of its own, and is compared with itself alone.
-struct HoleBatch {
+struct RetriangulationBatch {
   static constexpr std::size_t kLanes = 16;
   static constexpr std::size_t kMost = 16;  // neighbours
   static constexpr std::size_t kPairs = kMost * (kMost - 1) / 2;
@@ -78,9 +78,9 @@ struct HoleBatch {
 };
 
 /// What attributes add to the holes of a batch. Differences of values count `cost` times their square.
-struct HoleAttributes {
-  using Lanes = HoleBatch::Lanes;
-  static constexpr std::size_t kMost = HoleBatch::kMost;
+struct RetriangulationAttributes {
+  using Lanes = RetriangulationBatch::Lanes;
+  static constexpr std::size_t kMost = RetriangulationBatch::kMost;
 
   // Input.
 
@@ -102,7 +102,7 @@ struct HoleAttributes {
   alignas(64) std::array<Lanes, 3> b{};
   alignas(64) Lanes c{};
   /// The sides of a seam through v, as SeamSides has them. New edges across it must be barred.
-  std::array<std::int32_t, HoleBatch::kLanes> last{}, split{};
+  std::array<std::int32_t, RetriangulationBatch::kLanes> last{}, split{};
 
   // Result.
 
@@ -114,13 +114,13 @@ struct HoleAttributes {
   alignas(64) std::array<std::array<Lanes, 2>, kMost> heir{};
   static constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
   alignas(64) std::array<Lanes, kTriples> at_v{};
-  alignas(64) std::array<Lanes, HoleBatch::kPairs> inside{}, outside{}, edge{};
+  alignas(64) std::array<Lanes, RetriangulationBatch::kPairs> inside{}, outside{}, edge{};
 };
 
 /// Finds the best triangulations in which no face turns by more than the angle whose cosine is given; of the
 /// same sum with those of attributes, if there are any. O(n³) for n neighbours and each component. The bytes
 /// are the same on every machine.
-void fill_holes(HoleBatch& batch, std::size_t neighbours, float cos_deviation,
-                HoleAttributes* attributes = nullptr);
+void retriangulate(RetriangulationBatch& batch, std::size_t neighbours, float cos_deviation,
+                   RetriangulationAttributes* attributes = nullptr);
 
 }  // namespace vkmesh::detail

@@ -168,7 +168,7 @@ class Wedges {
   /// To be called before the mesh fills the hole with the same.
   void fill_hole(std::span<const std::uint32_t> edges, std::size_t neighbours, const SeamSides& sides,
                  std::span<const std::array<std::uint8_t, 3>> triangles, std::size_t first) {
-    std::array<std::array<std::uint32_t, 3>, CollapseMesh::kMostAtHole> made;
+    std::array<std::array<std::uint32_t, 3>, CollapseMesh::kMaxHoleEdges> made;
     std::size_t count = 0;
     for (const auto& corners : triangles) {
       if (corners[2] == neighbours) continue;  // closes the boundary

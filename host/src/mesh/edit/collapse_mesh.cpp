@@ -254,10 +254,10 @@ std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32
                                                      std::span<const std::array<std::uint8_t, 3>> triangles,
                                                      std::size_t first) {
   const std::size_t n = edges.size();
-  std::array<std::uint32_t, kMostAtHole> vertex, record;
+  std::array<std::uint32_t, kMaxHoleEdges> vertex, record;
   // By two corners the half-edge that waits for its twin: first what lies around the hole, then edges of
   // triangles whose other side is still to come.
-  std::array<std::array<std::uint32_t, kMostAtHole>, kMostAtHole> beyond;
+  std::array<std::array<std::uint32_t, kMaxHoleEdges>, kMaxHoleEdges> beyond;
   for (std::size_t i = 0; i < n; ++i) {
     vertex[i] = target(edges[i]);
     record[i] = edges[i] >> 2;

@@ -261,14 +261,14 @@ class CollapseMesh {
     remove(f);
   }
 
-  static constexpr std::size_t kMostAtHole = 17;
+  static constexpr std::size_t kMaxHoleEdges = 17;
   /// Removes the origin of `edges`, all that leave it, counter-clockwise, and puts these triangles in the
   /// place of its faces: corners are numbers of edges in ascending order, and stand for their targets. Each
   /// new edge stands in an earlier triangle as one between neighbouring corners, and in a later one between
   /// the first and the last. The apex is the target of the last edge if of any. No new edge may be in the
   /// mesh. Triangles that close no boundary get the records of the faces of the edges from number `first` on,
   /// then from 0 on; never that of the last edge. Returns the sources of the two faces that went, kInvalid
-  /// for a ghost. At most kMostAtHole edges; O(edges).
+  /// for a ghost. At most kMaxHoleEdges edges; O(edges).
   std::array<std::uint32_t, 2> fill_hole(std::span<const std::uint32_t> edges,
                                          std::span<const std::array<std::uint8_t, 3>> triangles,
                                          std::size_t first = 0);
