@@ -51,7 +51,7 @@ class EdgeCollapses {
     Queue queue;
     std::uint32_t last = MonotoneQueue::kLast;  // bucket that is served
     /// Half-edges of edges that others must see to, and vertices whose parked edges they must.
-    std::vector<std::uint32_t> handed_on, to_revive;
+    std::vector<std::uint32_t> forwarded, to_revive;
     /// What the square of a distance costs at least; 0 while points may move as they like.
     float cost_of_distance = 0;
     bool only_at_boundary = false;  // or at locked vertices
@@ -138,12 +138,12 @@ class EdgeCollapses {
     forget_touched();
   }
 
-  /// Takes over what another has handed on.
+  /// Takes over what another has forwarded.
   void take_over(Share& other) {
-    for (const std::uint32_t h : other.handed_on) share_->queue.insert_now(h);
+    for (const std::uint32_t h : other.forwarded) share_->queue.insert_now(h);
     for (const std::uint32_t v : other.to_revive)
       if (vertices_[v].alive() && vertices_[v].has(CollapseVertex::kHasParked)) revive_at(v);
-    other.handed_on.clear();
+    other.forwarded.clear();
     other.to_revive.clear();
   }
 
@@ -266,7 +266,7 @@ class EdgeCollapses {
       const CollapseMesh::Face& face = faces[h >> 2];
       const std::uint32_t tags = face.tags >> (h & 3u), queued = tags & 1u;
       if ((tags & interface) != 0) [[unlikely]] {
-        if (queued != 0) share_->handed_on.push_back(h);
+        if (queued != 0) share_->forwarded.push_back(h);
         continue;
       }
       b.ids[live] = h;
@@ -298,7 +298,7 @@ class EdgeCollapses {
     if (is_mine(h))
       share_->queue.insert_now(h);
     else
-      share_->handed_on.push_back(h);
+      share_->forwarded.push_back(h);
   }
 
   /// What was taken and not looked at in earnest.
@@ -506,7 +506,7 @@ class EdgeCollapses {
     if (is_mine(h))
       share_->queue.insert(h, cost);
     else
-      share_->handed_on.push_back(h);
+      share_->forwarded.push_back(h);
   }
 
   /// An edge at a vertex that goes, by the half-edge that is queued for it, and the vertex at its other end.

@@ -149,7 +149,7 @@ class VertexRemovals {
     [[nodiscard]] std::span<const Triangle> all() const { return std::span(of).first(count); }
   };
   /// The neighbours that v's part of the surface falls to, and how much of it to each.
-  struct Heirs {
+  struct Receivers {
     std::array<std::uint8_t, 3> neighbour;
     std::array<float, 3> share{};
   };
@@ -157,7 +157,7 @@ class VertexRemovals {
     const VertexStar* star;
     float error, of_attributes;
     Triangles triangles;
-    Heirs heirs;
+    Receivers receivers;
     bool has_existing;  // a new edge that the mesh has already
   };
   /// A walk around the end of a new edge, in search of the other.
@@ -405,7 +405,7 @@ class VertexRemovals {
       removal.of_attributes = error_of_attributes(other_attributes_, 0);
       if (!(removal.error < kNone)) break;
       removal.triangles = triangles_of(other_, 0, star);
-      removal.heirs = heirs_of(other_, 0, star);
+      removal.receivers = receivers_of(other_, 0, star);
     }
     for (auto& barred : other_.barred) barred[0] = 0;
   }
@@ -424,7 +424,7 @@ class VertexRemovals {
             batch_.error[lane],
             error_of_attributes(attributes_, lane),
             triangles_of(batch_, lane, star),
-            heirs_of(batch_, lane, star),
+            receivers_of(batch_, lane, star),
             false};
   }
 
@@ -526,17 +526,18 @@ class VertexRemovals {
   void remove(const Removal& removal) {
     const VertexStar& star = *removal.star;
     CollapseVertex& gone = vertices_[star.vertex];
-    std::uint32_t heir = 0;
+    std::uint32_t receiver = 0;
     float most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const float share = removal.heirs.share[i];
+      const float share = removal.receivers.share[i];
       if (!(share > 0)) continue;
-      const std::uint32_t r = star.target[removal.heirs.neighbour[i]];
-      if (share > most) heir = r;
+      const std::uint32_t r = star.target[removal.receivers.neighbour[i]];
+      if (share > most) receiver = r;
       most = std::max(most, share);
       absorb(vertices_[r], gone, share);
       if constexpr (kAttributes)
-        state_.attributes->hand_on(star.all_edges(), star.sides, removal.heirs.neighbour[i], share);
+        state_.attributes->distribute_quadric(star.all_edges(), star.sides, removal.receivers.neighbour[i],
+                                              share);
     }
     if (gone.weight > 0)
       state_.outcome.error2 = std::max(state_.outcome.error2,
@@ -551,12 +552,12 @@ class VertexRemovals {
     }
     if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(faces_);
     const auto faces = mesh_.fill_hole(star.all_edges(), removal.triangles.all(), first_face(star));
-    gone.leading = CollapseVertex::kGone | heir;
+    gone.leading = CollapseVertex::kGone | receiver;
     if (state_.keep_events) keep_faces(removal);
     if (state_.keep_events)
-      state_.outcome.events.push_back({vertices_[heir].source & CollapseVertex::kSourceMask,
-                                       gone.source & CollapseVertex::kSourceMask, vertices_[heir].position,
-                                       false, faces});
+      state_.outcome.events.push_back({vertices_[receiver].source & CollapseVertex::kSourceMask,
+                                       gone.source & CollapseVertex::kSourceMask,
+                                       vertices_[receiver].position, false, faces});
     state_.faces -= star.closed ? 2 : 1;
     --state_.vertices;
     ++state_.outcome.collapses;
@@ -609,8 +610,8 @@ class VertexRemovals {
 
   /// The corners of the triangle that holds v, by v's place in it; on a boundary or seam the ends of the new
   /// edge, by the point nearest to v.
-  [[nodiscard]] Heirs heirs_of(const RetriangulationBatch& batch, std::size_t lane,
-                               const VertexStar& star) const {
+  [[nodiscard]] Receivers receivers_of(const RetriangulationBatch& batch, std::size_t lane,
+                                       const VertexStar& star) const {
     std::size_t a = 0, c = star.neighbours() - 1;
     bool on_curve = !star.closed;
     if constexpr (kAttributes) {
@@ -619,7 +620,7 @@ class VertexRemovals {
         c = star.sides.last;
       }
     }
-    Heirs heirs{{0, static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c)}};
+    Receivers receivers{{0, static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c)}};
     if (on_curve) {
       float along = 0, squared = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -628,8 +629,8 @@ class VertexRemovals {
         squared += d * d;
       }
       const float t = squared > 0 ? std::clamp(along / squared, 0.0f, 1.0f) : 0.0f;
-      heirs.share = {1 - t, t, 0};
-      return heirs;
+      receivers.share = {1 - t, t, 0};
+      return receivers;
     }
     while (true) {
       const std::size_t ac = RetriangulationBatch::pair(a, c);
@@ -642,23 +643,23 @@ class VertexRemovals {
         a = b;
       } else {
         const float at_b = std::max(-batch.left[ac][lane], 0.0f), sum = at_a + at_b + at_c;
-        heirs.neighbour = {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
-                           static_cast<std::uint8_t>(c)};
-        heirs.share = {1, 0, 0};
-        if (sum > 0) heirs.share = {at_a / sum, at_b / sum, at_c / sum};
-        return heirs;
+        receivers.neighbour = {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
+                               static_cast<std::uint8_t>(c)};
+        receivers.share = {1, 0, 0};
+        if (sum > 0) receivers.share = {at_a / sum, at_b / sum, at_c / sum};
+        return receivers;
       }
     }
   }
 
-  /// Adds a share of the quadric of `gone` to that of `heir`.
-  static void absorb(CollapseVertex& heir, const CollapseVertex& gone, float share) {
+  /// Adds a share of the quadric of `gone` to that of `receiver`.
+  static void absorb(CollapseVertex& receiver, const CollapseVertex& gone, float share) {
     CollapseVertex moved = gone;
     std::array<float, 3> d;
-    for (std::size_t k = 0; k < 3; ++k) d[k] = heir.position[k] - gone.position[k];
+    for (std::size_t k = 0; k < 3; ++k) d[k] = receiver.position[k] - gone.position[k];
     moved.shift(d);
-    heir.add_quadric(moved, share);
-    heir.weight += share * moved.weight;
+    receiver.add_quadric(moved, share);
+    receiver.weight += share * moved.weight;
   }
 
   static constexpr std::size_t kSearched = 32;

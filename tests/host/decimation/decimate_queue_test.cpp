@@ -160,7 +160,7 @@ TEST_CASE("a monotone queue hands out its ids, each where it was, and drops what
   third.insert(1000, 8.0f);
   std::array<std::uint32_t, 1> one{};
   REQUIRE(third.take(one) == 1);  // which serves 8 now
-  queue.hand_out([&](std::uint32_t id) { return id % 2 == 0 ? &even : id % 3 == 0 ? &third : nullptr; });
+  queue.distribute([&](std::uint32_t id) { return id % 2 == 0 ? &even : id % 3 == 0 ? &third : nullptr; });
   CHECK(queue.empty());
   CHECK(even.size() == 300);
   CHECK(third.size() == 100);

@@ -341,11 +341,11 @@ void AttributeQuadrics::set(RetriangulationAttributes& batch, std::size_t lane,
   }
 }
 
-void AttributeQuadrics::hand_on(std::span<const std::uint32_t> edges, const SeamSides& sides,
-                                std::size_t neighbour, float part) {
-  const std::uint32_t v = mesh_.origin(edges[0]), heir = mesh_.target(edges[neighbour]);
-  const std::array<float, 3> d = between(heir, v);
-  CollapseVertex &left = apart_[heir], moved = apart_[v];
+void AttributeQuadrics::distribute_quadric(std::span<const std::uint32_t> edges, const SeamSides& sides,
+                                           std::size_t neighbour, float part) {
+  const std::uint32_t v = mesh_.origin(edges[0]), receiver = mesh_.target(edges[neighbour]);
+  const std::array<float, 3> d = between(receiver, v);
+  CollapseVertex &left = apart_[receiver], moved = apart_[v];
   moved.shift({-d[0], -d[1], -d[2]});
   left.add_quadric(moved, part);
   for (std::size_t side = 0; side < sides.count(); ++side) {

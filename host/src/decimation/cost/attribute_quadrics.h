@@ -70,8 +70,8 @@ class AttributeQuadrics {
            std::size_t neighbours, const SeamSides& sides) const;
   /// Gives a share of what the vertex stands for to one of its neighbours; of a vertex on a seam, to one at
   /// an end of the new seam edge.
-  void hand_on(std::span<const std::uint32_t> edges, const SeamSides& sides, std::size_t neighbour,
-               float share);
+  void distribute_quadric(std::span<const std::uint32_t> edges, const SeamSides& sides, std::size_t neighbour,
+                          float share);
   /// To be told before the mesh fills the hole.
   void fill_hole(std::span<const std::uint32_t> edges, std::size_t neighbours, const SeamSides& sides,
                  std::span<const std::array<std::uint8_t, 3>> triangles, std::size_t first) {

@@ -347,7 +347,7 @@ void find_heirs(const RetriangulationBatch& batch, const Curve& curve, const Wor
   const auto& b = attributes.b;
   for (std::size_t i = 0; i < w.n; ++i) {
     alignas(64) Vectors at;
-    auto& [one, other] = attributes.heir[i];
+    auto& [one, other] = attributes.receiver[i];
     VKMESH_LANES(l) {
       const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
                   z = batch.ring[i][2][l] - batch.v[2][l];
@@ -362,7 +362,7 @@ void find_heirs(const RetriangulationBatch& batch, const Curve& curve, const Wor
     for (const auto& component : attributes.components)
       for (std::size_t side = 0; side < 2; ++side) {
         const auto& [off, gradient, ring] = component.side[side];
-        Lanes& sum = attributes.heir[i][side];
+        Lanes& sum = attributes.receiver[i][side];
         VKMESH_LANES(l) {
           const float apart = (off[l] - ring[i][l]) + (gradient[0][l] * at[0][l] + gradient[1][l] * at[1][l] +
                                                        gradient[2][l] * at[2][l]);
@@ -372,7 +372,7 @@ void find_heirs(const RetriangulationBatch& batch, const Curve& curve, const Wor
   }
   for (std::size_t l = 0; l < kLanes; ++l) {
     const auto all = [&](std::size_t i) {
-      const auto& [one, other] = attributes.heir[i];
+      const auto& [one, other] = attributes.receiver[i];
       return one[l] + (attributes.split[l] != 0 ? other[l] : 0.0f);
     };
     const float t = w.toward[l];
@@ -419,8 +419,8 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
           }
         }
         const bool last_is_side = a == 0 && c + 1 == n;
-        const Lanes &heir_a = attributes.heir[a][0], &heir_b = attributes.heir[b][0],
-                    &heir_c = attributes.heir[c][0];
+        const Lanes &heir_a = attributes.receiver[a][0], &heir_b = attributes.receiver[b][0],
+                    &heir_c = attributes.receiver[c][0];
         VKMESH_LANES(l) {
           const float x1 = batch.left[ab][l], x2 = batch.left[bc][l], x3 = -batch.left[ac][l];
           const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (last_is_side & (x3 >= 0)));

@@ -111,7 +111,7 @@ struct RetriangulationAttributes {
 
   // Where a neighbour takes all over, on each side; of each triangle; of each new edge where v lies left of
   // it, right of it, and what counts.
-  alignas(64) std::array<std::array<Lanes, 2>, kMost> heir{};
+  alignas(64) std::array<std::array<Lanes, 2>, kMost> receiver{};
   static constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
   alignas(64) std::array<Lanes, kTriples> at_v{};
   alignas(64) std::array<Lanes, RetriangulationBatch::kPairs> inside{}, outside{}, edge{};

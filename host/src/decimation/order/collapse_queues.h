@@ -39,8 +39,8 @@ class LazyQueue {
   void absorb(LazyQueue& other) { queue_.absorb(other.queue_); }
   /// Of what it holds, each to the queue that to(id) points to, if to any.
   template <class To>
-  void hand_out(To&& to) {
-    queue_.hand_out([&](std::uint32_t id) {
+  void distribute(To&& to) {
+    queue_.distribute([&](std::uint32_t id) {
       LazyQueue* const queue = to(id);
       return queue == nullptr ? nullptr : &queue->queue_;
     });

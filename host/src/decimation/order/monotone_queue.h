@@ -86,11 +86,11 @@ class MonotoneQueue {
 
   /// Takes all that another queue holds, into the same buckets or that being served.
   void absorb(MonotoneQueue& other) {
-    other.hand_out([this](std::uint32_t) { return this; });
+    other.distribute([this](std::uint32_t) { return this; });
   }
   /// Gives all that it holds to the queues that to(id) points to, as absorb does; what has none is dropped.
   template <class To>
-  void hand_out(To&& to) {
+  void distribute(To&& to) {
     std::array<std::uint32_t, kChunk> ids;
     while (const std::size_t count = take(ids))
       for (std::size_t i = 0; i < count; ++i)

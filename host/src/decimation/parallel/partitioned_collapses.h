@@ -191,8 +191,8 @@ class PartitionedCollapses {
       return mesh.at_interface(h) ? &interface_->queue
                                   : &partitions_[labels_[mesh.origin(h)] & ~Partition::kInner]->share.queue;
     };
-    for (const auto& half : halves) half->share.queue.hand_out(home);
-    interface.hand_out(home);
+    for (const auto& half : halves) half->share.queue.distribute(home);
+    interface.distribute(home);
   }
   void merge_all() {
     std::size_t edges = 0;
