@@ -120,7 +120,7 @@ class EdgeCollapses {
       for (std::size_t i = 0; i < count; i += EdgeBatch::kSize) {
         const auto some = std::span(block.ids).subspan(i, std::min(EdgeBatch::kSize, count - i));
         evaluate(some, std::span(block.ends).subspan(i, some.size()), block.batch);
-        rank(some, block.batch, block.star, &block.cost[i]);
+        rank(some, block.batch, block.change, &block.cost[i]);
       }
     };
     const auto finish = [&](std::size_t, std::size_t, First& block) {
@@ -200,7 +200,7 @@ class EdgeCollapses {
     std::vector<std::uint8_t> number = std::vector<std::uint8_t>(kMost);
     std::vector<float> cost = std::vector<float>(kMost);
     EdgeBatch batch;
-    Star star;
+    LocalChange change;
     std::size_t count = 0;
   };
 
@@ -229,18 +229,19 @@ class EdgeCollapses {
   /// Of the edges of the batch.
   const float* ranks_of(std::span<const std::uint32_t> edges) {
     if constexpr (!Placement::kByCriteria) return batch_.cost.data();
-    rank(edges, batch_, star_, ranks_.data());
+    rank(edges, batch_, change_, ranks_.data());
     return ranks_.data();
   }
 
   /// Under which costs the queue holds the edges of a batch.
-  void rank(std::span<const std::uint32_t> edges, const EdgeBatch& batch, Star& star, float* ranks) const {
+  void rank(std::span<const std::uint32_t> edges, const EdgeBatch& batch, LocalChange& change,
+            float* ranks) const {
     if constexpr (Placement::kByCriteria) {
       for (std::size_t i = 0; i < edges.size(); ++i) {
         const CollapseVertex &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
-        take_star(star, mesh_, edges[i],
-                  Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
-        ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, star);
+        record_collapse(change, mesh_, edges[i],
+                        Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
+        ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, change);
       }
     } else {
       std::copy_n(batch.cost.begin(), edges.size(), ranks);
@@ -419,12 +420,13 @@ class EdgeCollapses {
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q,
                                     const EdgeRings& rings) {
-    take_star(star_, mesh_, due.half_edge, Merger::place_of(vertices_[p], vertices_[q], due.end, due.x));
+    record_collapse(change_, mesh_, due.half_edge,
+                    Merger::place_of(vertices_[p], vertices_[q], due.end, due.x));
     const std::size_t at_p = rings.p.size() + 1, at_q = rings.q.size() + 1;
-    star_.edges_before =
+    change_.edges_before =
         std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
-    star_.edges_after = at_p + at_q - 4 - (mesh_.on_boundary(p) || mesh_.on_boundary(q) ? 1 : 0);
-    return share_->state.criteria->allow(star_);
+    change_.edges_after = at_p + at_q - 4 - (mesh_.on_boundary(p) || mesh_.on_boundary(q) ? 1 : 0);
+    return share_->state.criteria->allow(change_);
   }
 
   /// A ring of any size.
@@ -471,7 +473,7 @@ class EdgeCollapses {
       collect_moved(merge.half_edge);
       price_moved(vertices_[merge.gone], vertices_[merge.kept], due.cost);
     }
-    if (state.criteria != nullptr && state.criteria->bounds()) state.criteria->keep(star_);
+    if (state.criteria != nullptr && state.criteria->bounds()) state.criteria->keep(change_);
     erase_queued(merge.half_edge);
     erase_queued(mesh_.twin(merge.half_edge));
     const CollapseMesh::Collapsed collapsed = merger_.carry_out(state, due, merge, share_->queue.bucket());
@@ -640,7 +642,7 @@ class EdgeCollapses {
   Merger merger_;
   EdgeBatch batch_;
   EdgeBatch::Lanes ranks_;
-  Star star_;
+  LocalChange change_;
   std::array<std::unique_ptr<Pending>, 4> pending_ = {
       std::make_unique<Pending>(), std::make_unique<Pending>(), std::make_unique<Pending>(),
       std::make_unique<Pending>()};

@@ -335,8 +335,8 @@ class VertexRemovals {
   [[nodiscard]] float cost_of(const Removal& removal) {
     const float error = removal.error + removal.of_attributes;
     if (state_.criteria == nullptr || !state_.criteria->ranks()) return error;
-    take_faces(*removal.star, removal.triangles);
-    return state_.criteria->cost(error, vertices_[removal.star->vertex].weight, faces_);
+    record_removal(*removal.star, removal.triangles);
+    return state_.criteria->cost(error, vertices_[removal.star->vertex].weight, change_);
   }
   [[nodiscard]] static float error_of_attributes([[maybe_unused]] const Attributes& attributes,
                                                  [[maybe_unused]] std::size_t lane) {
@@ -345,13 +345,13 @@ class VertexRemovals {
   }
 
   [[nodiscard]] bool meets_criteria(const VertexStar& star, const Triangles& triangles) {
-    take_faces(star, triangles);
+    record_removal(star, triangles);
     std::array<std::size_t, kMost> gained{};
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) { ++gained[a], ++gained[b]; });
     for (std::size_t i = 0; i < star.neighbours(); ++i)
       if (gained[i] > 1)
-        faces_.edges_after = std::max(faces_.edges_after, edges_at(star.target[i]) - 1 + gained[i]);
-    return state_.criteria->allow(faces_);
+        change_.edges_after = std::max(change_.edges_after, edges_at(star.target[i]) - 1 + gained[i]);
+    return state_.criteria->allow(change_);
   }
 
   /// Of the mesh's own.
@@ -365,32 +365,32 @@ class VertexRemovals {
     return edges;
   }
 
-  /// What a removal changes, into faces_: new faces get the records of the old ones in turn.
-  void take_faces(const VertexStar& star, const Triangles& triangles) {
-    faces_.clear();
+  /// What a removal changes, into change_: new faces get the records of the old ones in turn.
+  void record_removal(const VertexStar& star, const Triangles& triangles) {
+    change_.clear();
     const DVec3 here = point_of(vertices_[star.vertex].position);
-    faces_.inner_before.push_back(here);
+    change_.inner_before.push_back(here);
     double length2 = 0;
     for (std::size_t i = 0; i < star.neighbours(); ++i) {
       const DVec3 way = point_of(vertices_[star.target[i]].position) - here;
       length2 += glm::dot(way, way);
     }
-    faces_.length2 = length2 / static_cast<double>(star.neighbours());
+    change_.length2 = length2 / static_cast<double>(star.neighbours());
     for (const std::uint32_t h : std::span(star.edge).first(star.edges))
-      if (!mesh_.is_ghost(h)) faces_.before.push_back(face_of(mesh_, h >> 2));
+      if (!mesh_.is_ghost(h)) change_.before.push_back(face_of(mesh_, h >> 2));
     const std::size_t first = first_face(star);
     for (const auto& corners : triangles.all()) {
       if (corners[2] == star.neighbours()) continue;  // closes the boundary
-      Star::Face face{{}, star.edge[(first + faces_.after.size()) % (star.edges - 1)] >> 2};
+      LocalChange::Face face{{}, star.edge[(first + change_.after.size()) % (star.edges - 1)] >> 2};
       for (std::size_t i = 0; i < 3; ++i)
         face.corner[i] = point_of(vertices_[star.target[corners[i]]].position);
-      faces_.after.push_back(face);
+      change_.after.push_back(face);
     }
     // An ear of the boundary leaves nothing in its place but the face beside it.
-    if (faces_.after.empty()) {
-      const Star::Face beside = face_of(mesh_, beyond(star, 0) >> 2);
-      faces_.before.push_back(beside);
-      faces_.after.push_back(beside);
+    if (change_.after.empty()) {
+      const LocalChange::Face beside = face_of(mesh_, beyond(star, 0) >> 2);
+      change_.before.push_back(beside);
+      change_.after.push_back(beside);
     }
   }
 
@@ -550,7 +550,7 @@ class VertexRemovals {
       state_.attributes->fill_hole(star.all_edges(), star.neighbours(), star.sides, removal.triangles.all(),
                                    first_face(star));
     }
-    if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(faces_);
+    if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(change_);
     const auto faces = mesh_.fill_hole(star.all_edges(), removal.triangles.all(), first_face(star));
     gone.leading = CollapseVertex::kGone | receiver;
     if (state_.keep_events) keep_faces(removal);
@@ -672,7 +672,7 @@ class VertexRemovals {
   RetriangulationBatch batch_, other_;
   [[no_unique_address]] Attributes attributes_;  // at batch_
   [[no_unique_address]] Attributes other_attributes_;
-  Star faces_;  // that the removal changes which is looked at
+  LocalChange change_;  // that the removal changes which is looked at
   std::vector<Removal> due_;
   std::vector<Search> searches_;
   std::vector<std::uint32_t> touched_;

@@ -14,7 +14,7 @@
 namespace vkmesh::detail {
 namespace {
 
-using Faces = std::vector<Star::Face>;
+using Faces = std::vector<LocalChange::Face>;
 
 /// Triangles from `apex` to the sides of a polygon.
 Faces fan(const std::vector<DVec3>& ring, const DVec3& apex) {
@@ -26,12 +26,12 @@ Faces fan(const std::vector<DVec3>& ring, const DVec3& apex) {
 
 double distance(const DVec3& p, const Faces& faces) {
   double least2 = std::numeric_limits<double>::infinity();
-  for (const Star::Face& face : faces) least2 = std::min(least2, squared_distance(p, face.corner));
+  for (const LocalChange::Face& face : faces) least2 = std::min(least2, squared_distance(p, face.corner));
   return std::sqrt(least2);
 }
 
 /// Of points on a face in a grid.
-double farthest(const Star::Face& face, const Faces& faces) {
+double farthest(const LocalChange::Face& face, const Faces& faces) {
   constexpr int kSteps = 40;
   double most = 0;
   const auto& [a, b, c] = face.corner;

@@ -29,9 +29,9 @@ double longest_side2(const Triangle& t) {
 }
 
 template <class F>
-double largest(std::span<const Star::Face> faces, F&& of) {
+double largest(std::span<const LocalChange::Face> faces, F&& of) {
   double most = 0;
-  for (const Star::Face& face : faces) most = std::max(most, of(face.corner));
+  for (const LocalChange::Face& face : faces) most = std::max(most, of(face.corner));
   return most;
 }
 
@@ -76,96 +76,96 @@ Criteria::Criteria(const DecimateCriteria& criteria, const Frame& frame, const C
   }
 }
 
-float Criteria::cost(float quadric, float area, const Star& star) const {
+float Criteria::cost(float quadric, float area, const LocalChange& change) const {
   const auto square = [](double x) { return x * x; };
   double factor = square(criteria_.density_weight);
   if (criteria_.aspect_weight > 0) {
-    const double worst = largest(star.after, aspect_ratio);
+    const double worst = largest(change.after, aspect_ratio);
     factor += square(criteria_.aspect_weight) * (worst > 0 ? 1 - 1 / worst : 0.0);
   }
   if (criteria_.normal_weight > 0) {
     double least = 1;  // cosine
-    for (const Star::Face& face : star.after) {
+    for (const LocalChange::Face& face : change.after) {
       const DVec3 n = unit_normal(face.corner);
       double nearest = -1;
-      for (const Star::Face& old : star.before)
+      for (const LocalChange::Face& old : change.before)
         nearest = std::max(nearest, glm::dot(n, unit_normal(old.corner)));
       least = std::min(least, nearest);
     }
     factor += square(criteria_.normal_weight) * (1 - least);
   }
   const double sum = square(criteria_.quadric_weight) * static_cast<double>(quadric) +
-                     static_cast<double>(area) * star.length2 * factor;
+                     static_cast<double>(area) * change.length2 * factor;
   return static_cast<float>(sum);
 }
 
-bool Criteria::allow(const Star& star) {
-  if (criteria_.max_valence && star.edges_after > std::max(*criteria_.max_valence, star.edges_before))
+bool Criteria::allow(const LocalChange& change) {
+  if (criteria_.max_valence && change.edges_after > std::max(*criteria_.max_valence, change.edges_before))
     return false;
   if (criteria_.max_edge_length) {
-    const double longest = largest(star.after, longest_side2);
-    if (longest > edge_length2_ && longest > largest(star.before, longest_side2)) return false;
+    const double longest = largest(change.after, longest_side2);
+    if (longest > edge_length2_ && longest > largest(change.before, longest_side2)) return false;
   }
   if (criteria_.max_aspect_ratio) {
-    const double worst = largest(star.after, aspect_ratio);
-    if (worst > *criteria_.max_aspect_ratio && worst > largest(star.before, aspect_ratio)) return false;
+    const double worst = largest(change.after, aspect_ratio);
+    if (worst > *criteria_.max_aspect_ratio && worst > largest(change.before, aspect_ratio)) return false;
   }
-  return (normals_.empty() || looks_alike(star)) && (distances_.empty() || stays_near(star));
+  return (normals_.empty() || looks_alike(change)) && (distances_.empty() || stays_near(change));
 }
 
 /// Whether inner vertices alone show that the distance would be too large: most that are too far are so
 /// there.
-bool Criteria::is_far(const Star& star) const {
-  const auto far = [&](const DVec3& p, std::span<const Star::Face> faces, bool with_theirs) {
-    return std::all_of(faces.begin(), faces.end(), [&](const Star::Face& face) {
+bool Criteria::is_far(const LocalChange& change) const {
+  const auto far = [&](const DVec3& p, std::span<const LocalChange::Face> faces, bool with_theirs) {
+    return std::all_of(faces.begin(), faces.end(), [&](const LocalChange::Face& face) {
       const double theirs = with_theirs ? static_cast<double>(distances_[face.record]) : 0;
       const double left = distance_ - theirs;
       return left < 0 || squared_distance(p, face.corner) > left * left;
     });
   };
-  return std::any_of(star.inner_after.begin(), star.inner_after.end(),
-                     [&](const DVec3& p) { return far(p, star.before, true); }) ||
-         std::any_of(star.inner_before.begin(), star.inner_before.end(),
-                     [&](const DVec3& p) { return far(p, star.after, false); });
+  return std::any_of(change.inner_after.begin(), change.inner_after.end(),
+                     [&](const DVec3& p) { return far(p, change.before, true); }) ||
+         std::any_of(change.inner_before.begin(), change.inner_before.end(),
+                     [&](const DVec3& p) { return far(p, change.after, false); });
 }
 
 /// A point of the original that is within d of a point of the surface before, which is within e of one after,
 /// is within d + e of that; and so the other way round.
-bool Criteria::stays_near(const Star& star) {
-  if (is_far(star)) return false;
+bool Criteria::stays_near(const LocalChange& change) {
+  if (is_far(change)) return false;
   DVec3 up(0.0);
-  for (const Star::Face& face : star.before) up += area_vector(face.corner);
-  distances_after_.assign(star.after.size(), 0.0f);
+  for (const LocalChange::Face& face : change.before) up += area_vector(face.corner);
+  distances_after_.assign(change.after.size(), 0.0f);
   const auto add = [&](std::size_t before, std::size_t after, double apart) {
-    const double sum = static_cast<double>(distances_[star.before[before].record]) + apart;
+    const double sum = static_cast<double>(distances_[change.before[before].record]) + apart;
     distances_after_[after] = std::max(distances_after_[after], rounded_up(sum));
     return sum <= distance_;
   };
-  return overlay_.cut(star.before, star.after, up, add) &&
-         overlay_.cut(star.after, star.before, up,
+  return overlay_.cut(change.before, change.after, up, add) &&
+         overlay_.cut(change.after, change.before, up,
                       [&](std::size_t j, std::size_t i, double apart) { return add(i, j, apart); });
 }
 
 /// Each face before is handed to the one after that its middle is nearest to; one that gets none has the
 /// normals of the one before that its own middle is nearest to.
-bool Criteria::looks_alike(const Star& star) {
-  const auto nearest = [](const Star::Face& face, std::span<const Star::Face> faces) {
+bool Criteria::looks_alike(const LocalChange& change) {
+  const auto nearest = [](const LocalChange::Face& face, std::span<const LocalChange::Face> faces) {
     const DVec3 middle = (face.corner[0] + face.corner[1] + face.corner[2]) / 3.0;
     std::pair<double, std::size_t> best{std::numeric_limits<double>::infinity(), 0};
     for (std::size_t k = 0; k < faces.size(); ++k)
       best = std::min(best, {squared_distance(middle, faces[k].corner), k});
     return best.second;
   };
-  normals_after_.assign(star.after.size(), Ball{});
-  if (star.after.empty()) return true;
-  for (const Star::Face& face : star.before) {
-    Ball& ball = normals_after_[nearest(face, star.after)];
+  normals_after_.assign(change.after.size(), Ball{});
+  if (change.after.empty()) return true;
+  for (const LocalChange::Face& face : change.before) {
+    Ball& ball = normals_after_[nearest(face, change.after)];
     ball = around(ball, normals_[face.record]);
   }
-  for (std::size_t j = 0; j < star.after.size(); ++j) {
+  for (std::size_t j = 0; j < change.after.size(); ++j) {
     Ball& ball = normals_after_[j];
-    if (ball.radius < 0) ball = normals_[star.before[nearest(star.after[j], star.before)].record];
-    const DVec3 n = unit_normal(star.after[j].corner);
+    if (ball.radius < 0) ball = normals_[change.before[nearest(change.after[j], change.before)].record];
+    const DVec3 n = unit_normal(change.after[j].corner);
     if (ball.radius < 0 || n == DVec3(0.0)) continue;
     const DVec3 away = n - point_of(ball.centre);
     if (std::sqrt(glm::dot(away, away)) + static_cast<double>(ball.radius) > chord_) return false;
@@ -173,10 +173,10 @@ bool Criteria::looks_alike(const Star& star) {
   return true;
 }
 
-void Criteria::keep(const Star& star) {
-  for (std::size_t j = 0; j < star.after.size(); ++j) {
-    if (!distances_.empty()) distances_[star.after[j].record] = distances_after_[j];
-    if (!normals_.empty()) normals_[star.after[j].record] = normals_after_[j];
+void Criteria::keep(const LocalChange& change) {
+  for (std::size_t j = 0; j < change.after.size(); ++j) {
+    if (!distances_.empty()) distances_[change.after[j].record] = distances_after_[j];
+    if (!normals_.empty()) normals_[change.after[j].record] = normals_after_[j];
   }
 }
 

@@ -16,7 +16,7 @@
 
 namespace vkmesh::detail {
 
-/// The criteria of DecimateCriteria, on stars in local units.
+/// The criteria of DecimateCriteria, on changes in local units.
 class Criteria {
  public:
   /// 4 bytes a face if the distance is watched, 16 if normals are.
@@ -37,12 +37,12 @@ class Criteria {
   [[nodiscard]] bool watches_distance() const { return watches_distance_; }
 
   /// What a removal costs, `quadric` included: a mean square times `area`, which all that it counts is in.
-  [[nodiscard]] float cost(float quadric, float area, const Star& star) const;
+  [[nodiscard]] float cost(float quadric, float area, const LocalChange& change) const;
 
   /// Whether no bound forbids the removal; `keep` may be called then.
-  [[nodiscard]] bool allow(const Star& star);
+  [[nodiscard]] bool allow(const LocalChange& change);
   /// The removal that was allowed last is done.
-  void keep(const Star& star);
+  void keep(const LocalChange& change);
 
   /// No point of the surface is farther than this from the original, nor the other way round; local units.
   [[nodiscard]] double distance(const CollapseMesh& mesh) const;
@@ -54,9 +54,9 @@ class Criteria {
     float radius = -1;  // around none
   };
   static Ball around(const Ball& a, const Ball& b);
-  [[nodiscard]] bool is_far(const Star& star) const;
-  [[nodiscard]] bool stays_near(const Star& star);
-  [[nodiscard]] bool looks_alike(const Star& star);
+  [[nodiscard]] bool is_far(const LocalChange& change) const;
+  [[nodiscard]] bool stays_near(const LocalChange& change);
+  [[nodiscard]] bool looks_alike(const LocalChange& change);
 
   DecimateCriteria criteria_;
   bool watches_distance_, bounds_;
@@ -67,7 +67,7 @@ class Criteria {
   // it; the normals of the original's faces that were handed to it.
   std::vector<float> distances_;
   std::vector<Ball> normals_;
-  // Of the star that was allowed last.
+  // Of the change that was allowed last.
   std::vector<float> distances_after_;
   std::vector<Ball> normals_after_;
   Overlay overlay_;

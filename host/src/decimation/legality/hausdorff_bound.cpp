@@ -87,7 +87,8 @@ double Overlay::take(const Triangle& triangle, const DVec3& up) {
   return most < 0 ? -1 : std::sqrt(most);
 }
 
-std::pair<std::size_t, double> Overlay::nearest(const Polygon& polygon, std::span<const Star::Face> to) {
+std::pair<std::size_t, double> Overlay::nearest(const Polygon& polygon,
+                                                std::span<const LocalChange::Face> to) {
   std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
   for (std::size_t j = 0; j < to.size(); ++j)
     if (const double d = reach2(polygon, to[j].corner); d < best.second) best = {j, d};

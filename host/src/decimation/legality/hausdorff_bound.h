@@ -21,7 +21,8 @@ class Overlay {
   /// Calls use(i, j, d) for each piece of from[i]: none of its points is farther than d from to[j]. The
   /// pieces cover from[i]. False as soon as `use` says so. O(|from| · |to|) where few edges cross.
   template <class Use>
-  bool cut(std::span<const Star::Face> from, std::span<const Star::Face> to, const DVec3& up, Use&& use) {
+  bool cut(std::span<const LocalChange::Face> from, std::span<const LocalChange::Face> to, const DVec3& up,
+           Use&& use) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       begin(from[i].corner);
       for (std::size_t j = 0; j < to.size() && !left_.empty(); ++j)
@@ -46,7 +47,8 @@ class Overlay {
   /// Takes what lies over the triangle out of what is left; how far it reaches, -1 if there is nothing.
   double take(const Triangle& triangle, const DVec3& up);
   /// For what lies over none of them: at the boundary, and where a surface folds.
-  static std::pair<std::size_t, double> nearest(const Polygon& polygon, std::span<const Star::Face> to);
+  static std::pair<std::size_t, double> nearest(const Polygon& polygon,
+                                                std::span<const LocalChange::Face> to);
   static double reach2(const Polygon& polygon, const Triangle& triangle);
   void split(const Polygon& polygon, const Triangle& by, const DVec3& up, Polygon& inside);
 

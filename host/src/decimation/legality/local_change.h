@@ -15,7 +15,7 @@ namespace vkmesh::detail {
 
 /// Those that go or move, and those that cover their place afterwards; the same closed curve bounds both,
 /// unless it runs along the boundary of the mesh.
-struct Star {
+struct LocalChange {
   struct Face {
     Triangle corner;       // local units
     std::uint32_t record;  // half-edges 4 record + i
@@ -40,14 +40,15 @@ inline DVec3 point_of(const std::array<float, 3>& p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-inline Star::Face face_of(const CollapseMesh& mesh, std::uint32_t record) {
+inline LocalChange::Face face_of(const CollapseMesh& mesh, std::uint32_t record) {
   const CollapseMesh::Face& face = mesh.face(4 * record);
-  Star::Face result{{}, record};
+  LocalChange::Face result{{}, record};
   for (std::size_t i = 0; i < 3; ++i) result.corner[i] = point_of(mesh.vertices[face.origin[i]].position);
   return result;
 }
 
 /// Of the ends of the edge of h, which move to this place.
-void take_star(Star& star, const CollapseMesh& mesh, std::uint32_t h, const std::array<float, 3>& place);
+void record_collapse(LocalChange& change, const CollapseMesh& mesh, std::uint32_t h,
+                     const std::array<float, 3>& place);
 
 }  // namespace vkmesh::detail
