@@ -19,7 +19,7 @@ class Criteria;
 
 enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked, kSeam, kCriterion };
 /// How many candidates, by Legality.
-using Census = std::array<std::size_t, 7>;
+using CountByReason = std::array<std::size_t, 7>;
 
 struct Limits {
   std::size_t faces = 0, vertices = 0;
@@ -40,9 +40,9 @@ struct Outcome {
   DecimateStop stop = DecimateStop::kTargetReached;
   double error2 = 0, attribute_error2 = 0;  // the largest of a removal, mean squares in local units
   std::size_t collapses = 0;
-  Census rejected{};                 // each time that one was
-  Census held{};                     // in the end, where no target was reached
-  std::size_t held_by_boundary = 0;  // of those that are locked
+  CountByReason rejected{};             // each time that one was
+  CountByReason blocked{};              // in the end, where no target was reached
+  std::size_t blocked_by_boundary = 0;  // of those that are locked
   std::vector<Event> events;
   std::vector<DecimationChanges::Face> changed_faces;  // by removals, if events are kept
 

@@ -170,8 +170,8 @@ class EdgeCollapses {
     return any;
   }
 
-  /// What holds each edge that is left.
-  void hold() {
+  /// Counts what blocks each edge that is left.
+  void count_blocked() {
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
         if (!mesh_.alive(h) || !mesh_.parked(h) || (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
@@ -179,10 +179,10 @@ class EdgeCollapses {
         // Rounding differs from one half of the edge to the other, and it was one of them that was refused.
         Legality why = judge_alone(h);
         if (why == Legality::kLegal) why = judge_alone(mesh_.twin(h));
-        ++share_->state.outcome.held[static_cast<std::size_t>(why)];
+        ++share_->state.outcome.blocked[static_cast<std::size_t>(why)];
         if (why == Legality::kLocked && share_->state.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
             mesh_.on_boundary(mesh_.target(h)))
-          ++share_->state.outcome.held_by_boundary;
+          ++share_->state.outcome.blocked_by_boundary;
       }
   }
 

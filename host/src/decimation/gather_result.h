@@ -43,10 +43,10 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   result.rejected_locked = rejected(Legality::kLocked);
   result.rejected_seam = rejected(Legality::kSeam);
   result.rejected_criterion = rejected(Legality::kCriterion);
-  const auto held = [&](Legality why) { return outcome.held[static_cast<std::size_t>(why)]; };
-  result.held = {held(Legality::kLink),     held(Legality::kFoldOver),
-                 held(Legality::kError),    held(Legality::kLocked) - outcome.held_by_boundary,
-                 outcome.held_by_boundary,  held(Legality::kSeam),
+  const auto held = [&](Legality why) { return outcome.blocked[static_cast<std::size_t>(why)]; };
+  result.held = {held(Legality::kLink),       held(Legality::kFoldOver),
+                 held(Legality::kError),      held(Legality::kLocked) - outcome.blocked_by_boundary,
+                 outcome.blocked_by_boundary, held(Legality::kSeam),
                  held(Legality::kCriterion)};
   result.history.reserve(outcome.events.size());
   for (const Event& e : outcome.events)

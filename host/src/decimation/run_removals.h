@@ -14,8 +14,8 @@
 namespace vkmesh::detail {
 
 /// Removes until a limit is met or nothing is left to remove. `Removals` has, as PartitionedCollapses does,
-/// fill(), step(), kStep, hold(), which tells what holds the candidates that are left, and kMayCoarsen:
-/// whether the cheapest need not go first while much is to go.
+/// fill(), step(), kStep, count_blocked(), which counts what blocks the candidates that are left, and
+/// kMayCoarsen: whether the cheapest need not go first while much is to go.
 template <class Removals>
 Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -41,8 +41,8 @@ Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
       }
     }
     if (!removals.step()) {
-      removals.hold();
-      const bool by_error = state.outcome.held[static_cast<std::size_t>(Legality::kError)] > 0;
+      removals.count_blocked();
+      const bool by_error = state.outcome.blocked[static_cast<std::size_t>(Legality::kError)] > 0;
       state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
       break;
     }

@@ -113,14 +113,14 @@ class VertexRemovals {
     return count > 0;
   }
 
-  /// What holds each vertex that is left.
-  void hold() {
-    const auto count = [&](Legality why) { ++state_.outcome.held[static_cast<std::size_t>(why)]; };
+  /// Counts what blocks each vertex that is left.
+  void count_blocked() {
+    const auto count = [&](Legality why) { ++state_.outcome.blocked[static_cast<std::size_t>(why)]; };
     for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
       if (!vertices_[v].alive()) continue;
       if (vertices_[v].has(CollapseVertex::kLocked)) {
         count(Legality::kLocked);
-        if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.held_by_boundary;
+        if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.blocked_by_boundary;
       } else if (vertices_[v].has(CollapseVertex::kHasParked)) {
         stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
         evaluate([&](const VertexStar& star, std::size_t lane) {

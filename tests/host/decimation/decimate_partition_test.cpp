@@ -146,8 +146,8 @@ class Partitions {
   /// Between rounds no edge that is parked could collapse.
   void check_parked() {
     worker_.work_on(*shares_.back());
-    worker_.hold();
-    CHECK(state_.outcome.held[static_cast<std::size_t>(detail::Legality::kLegal)] == 0);
+    worker_.count_blocked();
+    CHECK(state_.outcome.blocked[static_cast<std::size_t>(detail::Legality::kLegal)] == 0);
   }
 
   [[nodiscard]] std::size_t collapses() const { return state_.outcome.collapses; }

@@ -77,7 +77,7 @@ class PartitionedCollapses {
     return true;
   }
 
-  void hold() { mine().hold(); }
+  void count_blocked() { mine().count_blocked(); }
 
  private:
   using Worker = EdgeCollapses<Placement, Queue, kAttributes>;
