@@ -12,7 +12,7 @@ namespace {
 
 /// Where the corners `ids` lie, some at a time: beyond `count` come some more of them.
 struct Corners {
-  const CollapseVertex* vertices;
+  const VertexRecord* vertices;
   const std::uint32_t* ids;
   std::size_t count;
   std::array<float*, 3> to;
@@ -51,7 +51,7 @@ look_around(const Corners& corners, std::span<const std::uint32_t> p, const std:
   for (std::size_t k = 0; k < corners.count; k += 4) {
     std::array<const void*, 4> rows;
     for (std::size_t i = 0; i < 4; ++i) {
-      const CollapseVertex& vertex = corners.vertices[corners.ids[k + i]];
+      const VertexRecord& vertex = corners.vertices[corners.ids[k + i]];
       rows[i] = &vertex;
       flags |= vertex.source;
     }
@@ -65,7 +65,7 @@ look_around(const Corners& corners, std::span<const std::uint32_t> p, const std:
 
 }  // namespace
 
-CollapseNeighbourhood::Summary CollapseNeighbourhood::set(const LargeArray<CollapseVertex>& vertices,
+CollapseNeighbourhood::Summary CollapseNeighbourhood::set(const LargeArray<VertexRecord>& vertices,
                                                           std::span<const std::uint32_t> around_p,
                                                           std::span<const std::uint32_t> around_q) {
   at_p_ = around_p.size() - 1;

@@ -31,7 +31,7 @@ class CollapseNeighbourhood {
   };
   /// Takes the neighbours of p but q and those of q but p, counter-clockwise: each ring starts where the
   /// other ends, and can be read up to a multiple of kBlock.
-  Summary set(const LargeArray<CollapseVertex>& vertices, std::span<const std::uint32_t> around_p,
+  Summary set(const LargeArray<VertexRecord>& vertices, std::span<const std::uint32_t> around_p,
               std::span<const std::uint32_t> around_q);
 
   /// Those at p come first.

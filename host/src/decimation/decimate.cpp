@@ -139,7 +139,7 @@ void lock(CollapseMesh& mesh, std::span<const std::uint32_t> corners, const Deci
   for (const std::uint32_t f : options.locked_faces)
     for (std::size_t i = 0; i < 3; ++i) locked[corners[3 * f + i]] = true;
   for (std::uint32_t v = 0; v < mesh.apex(); ++v)
-    if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= CollapseVertex::kLocked;
+    if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= VertexRecord::kLocked;
 }
 
 /// Builds a mesh whose vertices, and faces by their first vertex, go along Morton's curve; `order` tells
@@ -227,7 +227,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   const auto used = parallel_sum<std::size_t>(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t v = begin; v < end; ++v) {
-      CollapseVertex& vertex = mesh.vertices[v];
+      VertexRecord& vertex = mesh.vertices[v];
       prefetch_stream(&vertex);
       const std::uint32_t source = vertex_order.empty() ? static_cast<std::uint32_t>(v) : vertex_order[v];
       vertex = {};
@@ -241,13 +241,13 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   leading = std::vector<std::uint32_t>();
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());  // it lies nowhere
-  mesh.vertices[mesh.apex()].source = CollapseVertex::kLocked;  // which tells rings at the boundary
+  mesh.vertices[mesh.apex()].source = VertexRecord::kLocked;  // which tells rings at the boundary
   lock(mesh, corners, options);
   if (options.boundary == DecimateBoundary::kKept)
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
       for (std::uint32_t i = 0; i < 3; ++i)
         if (mesh.is_ghost(mesh.twin(4 * f + i)))
-          mesh.vertices[mesh.origin(4 * f + i)].source |= CollapseVertex::kLocked;
+          mesh.vertices[mesh.origin(4 * f + i)].source |= VertexRecord::kLocked;
   const bool in_order = vertex_order.empty();
   vertex_order = std::vector<std::uint32_t>();
   detail::ConstraintWeights weights;

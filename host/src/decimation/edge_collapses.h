@@ -86,7 +86,7 @@ class EdgeCollapses {
     constexpr std::size_t kAhead = 64;
     const auto make = [this, &prepare](std::size_t begin, std::size_t end, First& block) {
       CollapseMesh::Face* const faces = &mesh_.face(0);
-      const CollapseVertex* const vertices = vertices_.data();
+      const VertexRecord* const vertices = vertices_.data();
       std::uint32_t* const ids = block.ids.data();
       EdgeBatch::Ends* const ends = block.ends.data();
       std::uint8_t* const numbers = block.number.data();
@@ -142,7 +142,7 @@ class EdgeCollapses {
   void take_over(Share& other) {
     for (const std::uint32_t h : other.forwarded) share_->queue.insert_now(h);
     for (const std::uint32_t v : other.to_revive)
-      if (vertices_[v].alive() && vertices_[v].has(CollapseVertex::kHasParked)) revive_at(v);
+      if (vertices_[v].alive() && vertices_[v].has(VertexRecord::kHasParked)) revive_at(v);
     other.forwarded.clear();
     other.to_revive.clear();
   }
@@ -238,7 +238,7 @@ class EdgeCollapses {
             float* ranks) const {
     if constexpr (Placement::kByCriteria) {
       for (std::size_t i = 0; i < edges.size(); ++i) {
-        const CollapseVertex &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
+        const VertexRecord &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
         record_collapse(change, mesh_, edges[i],
                         Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
         ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, change);
@@ -316,7 +316,7 @@ class EdgeCollapses {
   }
   void forget_touched() {
     for (auto* touched : {&before_, &touched_}) {
-      for (const std::uint32_t v : *touched) vertices_[v].source &= ~CollapseVertex::kTouched;
+      for (const std::uint32_t v : *touched) vertices_[v].source &= ~VertexRecord::kTouched;
       touched->clear();
     }
   }
@@ -340,7 +340,7 @@ class EdgeCollapses {
     later.fetch_ends(mesh_, Pending::kAll);
     last.fetch_faces(mesh_, Pending::kAll);
     // What the last batch touched is known now to the rings of this one.
-    for (const std::uint32_t v : before_) vertices_[v].source &= ~CollapseVertex::kTouched;
+    for (const std::uint32_t v : before_) vertices_[v].source &= ~VertexRecord::kTouched;
     before_.clear();
     std::swap(before_, touched_);
     if (now.tried == now.due_count) now.reset();
@@ -356,7 +356,7 @@ class EdgeCollapses {
     const std::uint32_t h = due.half_edge;
     if (!mesh_.queued(h)) return;
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
-    if (vertices_[p].has(CollapseVertex::kTouched) || vertices_[q].has(CollapseVertex::kTouched)) {
+    if (vertices_[p].has(VertexRecord::kTouched) || vertices_[q].has(VertexRecord::kTouched)) {
       share_->queue.insert_now(h);
       return;
     }
@@ -369,15 +369,15 @@ class EdgeCollapses {
       ++share_->state.outcome.rejected[static_cast<std::size_t>(legality)];
       mesh_.clear_queued(h);
       mesh_.set_parked(h);
-      vertices_[p].source |= CollapseVertex::kHasParked;
-      vertices_[q].source |= CollapseVertex::kHasParked;
+      vertices_[p].source |= VertexRecord::kHasParked;
+      vertices_[q].source |= VertexRecord::kHasParked;
     }
   }
 
   /// Of the edge whose rings these are.
   [[nodiscard]] bool watches_distance() const {
     return share_->cost_of_distance > 0 &&
-           (!share_->only_at_boundary || (merger_.flags_around() & CollapseVertex::kLocked) != 0);
+           (!share_->only_at_boundary || (merger_.flags_around() & VertexRecord::kLocked) != 0);
   }
   /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
   /// collapse waits until the costs that are due allow for the distance between the faces before and after.
@@ -455,7 +455,7 @@ class EdgeCollapses {
     if (at_p.is_whole() && at_q.is_whole()) {
       const EdgeRings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size),
                             Ring(at_p.edge).first(at_p.size), Ring(at_q.edge).first(at_q.size)};
-      if ((merger_.look_around(rings) & CollapseVertex::kTouched) == 0) return rings;
+      if ((merger_.look_around(rings) & VertexRecord::kTouched) == 0) return rings;
     }
     const std::uint32_t h = b.due[i].half_edge;
     ring_p_.collect(mesh_, h);
@@ -542,7 +542,7 @@ class EdgeCollapses {
 
   // What they cost once `gone` has become `kept`, and whether that is less than they stand under in the
   // queue. With attributes that is not to be had before.
-  void price_moved(const CollapseVertex& gone, const CollapseVertex& kept, float cost) {
+  void price_moved(const VertexRecord& gone, const VertexRecord& kept, float cost) {
     for_each_batch(moved_, [&](std::span<Moved> moved) {
       if constexpr (kAttributes) {
         evaluate_moved(moved);
@@ -611,19 +611,19 @@ class EdgeCollapses {
 
   // Parked edges near v may have become legal.
   void revive(std::uint32_t v, const EdgeRings& rings) {
-    if ((merger_.flags_around() & CollapseVertex::kHasParked) != 0)
+    if ((merger_.flags_around() & VertexRecord::kHasParked) != 0)
       for (const EdgeRings::Ring& ring : {rings.p, rings.q})
         for (const std::uint32_t r : ring)
-          if (vertices_[r].has(CollapseVertex::kHasParked)) {
+          if (vertices_[r].has(VertexRecord::kHasParked)) {
             if (!share_->partition.is_bounded() || share_->partition.holds(r))
               revive_at(r);
             else
               share_->to_revive.push_back(r);
           }
-    if (vertices_[v].has(CollapseVertex::kHasParked)) revive_at(v);
+    if (vertices_[v].has(VertexRecord::kHasParked)) revive_at(v);
   }
   void revive_at(std::uint32_t v) {
-    vertices_[v].source &= ~CollapseVertex::kHasParked;
+    vertices_[v].source &= ~VertexRecord::kHasParked;
     const std::uint32_t start = vertices_[v].leading;
     std::uint32_t h = start;
     do {
@@ -637,7 +637,7 @@ class EdgeCollapses {
   }
 
   CollapseMesh& mesh_;
-  LargeArray<CollapseVertex>& vertices_;
+  LargeArray<VertexRecord>& vertices_;
   Share* share_ = nullptr;
   Merger merger_;
   EdgeBatch batch_;

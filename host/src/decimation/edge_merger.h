@@ -34,7 +34,7 @@ class EdgeMerger {
   explicit EdgeMerger(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
 
   /// Where the kept vertex comes to lie.
-  [[nodiscard]] static std::array<float, 3> place_of(const CollapseVertex& p, const CollapseVertex& q,
+  [[nodiscard]] static std::array<float, 3> place_of(const VertexRecord& p, const VertexRecord& q,
                                                      std::int32_t end, const std::array<float, 3>& x) {
     if (end != 0) return end == 1 ? p.position : q.position;
     return {p.position[0] + x[0], p.position[1] + x[1], p.position[2] + x[2]};
@@ -79,8 +79,8 @@ class EdgeMerger {
   [[nodiscard]] Merge plan(const DecimationState& state, const DueEdge& due, std::uint32_t p, std::uint32_t q,
                            const EdgeRings& rings) const {
     const std::size_t at_p = rings.p.size(), at_q = rings.q.size();
-    const bool is_first = (vertices_[p].source & CollapseVertex::kSourceMask) <
-                          (vertices_[q].source & CollapseVertex::kSourceMask);
+    const bool is_first =
+        (vertices_[p].source & VertexRecord::kSourceMask) < (vertices_[q].source & VertexRecord::kSourceMask);
     bool keep_p = (at_p > at_q) | ((at_p == at_q) & is_first);
     if (due.end != 0) keep_p = due.end == 1;
     if constexpr (kAttributes) {
@@ -97,7 +97,7 @@ class EdgeMerger {
   CollapseMesh::Collapsed carry_out(DecimationState& state, const DueEdge& due, const Merge& merge,
                                     std::uint32_t bucket) {
     const std::uint32_t h = merge.half_edge;
-    CollapseVertex &kept = vertices_[merge.kept], &gone = vertices_[merge.gone];
+    VertexRecord &kept = vertices_[merge.kept], &gone = vertices_[merge.gone];
     const bool from_p = h == due.half_edge;
     const std::uint32_t p = from_p ? merge.gone : merge.kept, q = from_p ? merge.kept : merge.gone;
     const std::array<float, 3> place = place_of(vertices_[p], vertices_[q], due.end, due.x);
@@ -111,7 +111,7 @@ class EdgeMerger {
     if (moves) {
       kept.shift(dk);
       kept.position = place;
-      kept.source |= CollapseVertex::kMoved;
+      kept.source |= VertexRecord::kMoved;
     }
     gone.shift(dg);
     kept.add_quadric(gone);
@@ -123,13 +123,13 @@ class EdgeMerger {
         state.outcome.attribute_error2 =
             std::max(state.outcome.attribute_error2, rest / static_cast<double>(weight));
     }
-    kept.source |= CollapseVertex::kTouched | (gone.source & CollapseVertex::kHasParked);
-    gone.source |= CollapseVertex::kTouched;
+    kept.source |= VertexRecord::kTouched | (gone.source & VertexRecord::kHasParked);
+    gone.source |= VertexRecord::kTouched;
     if (state.keep_events)
-      state.outcome.events.push_back({kept.source & CollapseVertex::kSourceMask,
-                                      gone.source & CollapseVertex::kSourceMask,
+      state.outcome.events.push_back({kept.source & VertexRecord::kSourceMask,
+                                      gone.source & VertexRecord::kSourceMask,
                                       place,
-                                      kept.has(CollapseVertex::kMoved),
+                                      kept.has(VertexRecord::kMoved),
                                       {mesh_.face(h).source, mesh_.face(mesh_.twin(h)).source},
                                       bucket});
     const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, merge.others);
@@ -165,7 +165,7 @@ class EdgeMerger {
   }
 
   CollapseMesh& mesh_;
-  LargeArray<CollapseVertex>& vertices_;
+  LargeArray<VertexRecord>& vertices_;
   CollapseNeighbourhood neighbourhood_;
   CollapseNeighbourhood::Summary summary_{};
   std::vector<std::uint32_t> sorted_;

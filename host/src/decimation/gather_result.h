@@ -57,7 +57,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   const auto& vertices = mesh.vertices;
   const std::size_t n = points.size();
   constexpr std::size_t kGrain = std::size_t{1} << 15;
-  constexpr std::uint32_t kMask = CollapseVertex::kSourceMask;
+  constexpr std::uint32_t kMask = VertexRecord::kSourceMask;
   const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
   const auto source_of_face = [&](std::uint32_t f) { return in_order ? f : mesh.face(4 * f).source; };
   // The numbers in the order of the input of records, whose own numbers these are.
@@ -76,11 +76,11 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   // itself.
   std::vector<std::uint32_t> by(n);
   const std::vector<std::uint32_t> alive = collect(n, [&](std::uint32_t v) {
-    const CollapseVertex& vertex = vertices[v];
+    const VertexRecord& vertex = vertices[v];
     prefetch_stream(&vertex);
     const std::uint32_t source = vertex.source & kMask;
     const bool absorbed = !vertex.alive() && vertex.leading != kInvalid;
-    by[source] = absorbed ? source_of(vertex.leading & ~CollapseVertex::kGone) : source;
+    by[source] = absorbed ? source_of(vertex.leading & ~VertexRecord::kGone) : source;
     return vertex.alive();
   });
   result.source_vertex = in_input_order(alive, n, source_of);
@@ -107,10 +107,10 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   by = std::vector<std::uint32_t>();
   result.positions.resize(alive.size());
   for (const std::uint32_t v : alive) {
-    const CollapseVertex& vertex = vertices[v];
+    const VertexRecord& vertex = vertices[v];
     const std::uint32_t source = vertex.source & kMask;
     result.positions[new_vertex[source]] =
-        vertex.has(CollapseVertex::kMoved) ? point_of<Point>(vertex.position, frame) : points[source];
+        vertex.has(VertexRecord::kMoved) ? point_of<Point>(vertex.position, frame) : points[source];
   }
 
   const std::vector<std::uint32_t> alive_faces = collect(mesh.face_count(), [&](std::uint32_t f) {

@@ -70,9 +70,9 @@ class VertexRemovals {
       count = 0;
     };
     for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
-      const CollapseVertex& vertex = vertices_[v];
+      const VertexRecord& vertex = vertices_[v];
       if (!vertex.alive()) continue;
-      if (vertex.has(CollapseVertex::kLocked)) {
+      if (vertex.has(VertexRecord::kLocked)) {
         ++state_.outcome.rejected[static_cast<std::size_t>(Legality::kLocked)];
         continue;
       }
@@ -103,12 +103,12 @@ class VertexRemovals {
     for (Removal* const removal : in_order) {
       if (removal == nullptr) continue;
       const std::uint32_t v = removal->star->vertex;
-      if (vertices_[v].has(CollapseVertex::kTouched) || state_.reached())
+      if (vertices_[v].has(VertexRecord::kTouched) || state_.reached())
         queue_.insert_now(v);
       else
         attempt(*removal);
     }
-    for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
+    for (const std::uint32_t v : touched_) vertices_[v].source &= ~VertexRecord::kTouched;
     touched_.clear();
     return count > 0;
   }
@@ -118,10 +118,10 @@ class VertexRemovals {
     const auto count = [&](Legality why) { ++state_.outcome.blocked[static_cast<std::size_t>(why)]; };
     for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
       if (!vertices_[v].alive()) continue;
-      if (vertices_[v].has(CollapseVertex::kLocked)) {
+      if (vertices_[v].has(VertexRecord::kLocked)) {
         count(Legality::kLocked);
         if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.blocked_by_boundary;
-      } else if (vertices_[v].has(CollapseVertex::kHasParked)) {
+      } else if (vertices_[v].has(VertexRecord::kHasParked)) {
         stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
         evaluate([&](const VertexStar& star, std::size_t lane) {
           if (!(batch_.error[lane] < kNone)) return count(Legality::kFoldOver);
@@ -291,7 +291,7 @@ class VertexRemovals {
     if (is_pillow(star)) return park(v, Legality::kLink);
     for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
       const std::uint32_t p = star.target[a], q = star.target[b];
-      if (vertices_[p].has(CollapseVertex::kTouched) && vertices_[q].has(CollapseVertex::kTouched))
+      if (vertices_[p].has(VertexRecord::kTouched) && vertices_[q].has(VertexRecord::kTouched))
         removal.has_existing |= has_edge(p, q);
     });
     if (removal.has_existing) {
@@ -520,12 +520,12 @@ class VertexRemovals {
 
   void park(std::uint32_t v, Legality why) {
     ++state_.outcome.rejected[static_cast<std::size_t>(why)];
-    vertices_[v].source |= CollapseVertex::kHasParked;
+    vertices_[v].source |= VertexRecord::kHasParked;
   }
 
   void remove(const Removal& removal) {
     const VertexStar& star = *removal.star;
-    CollapseVertex& gone = vertices_[star.vertex];
+    VertexRecord& gone = vertices_[star.vertex];
     std::uint32_t receiver = 0;
     float most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -552,19 +552,19 @@ class VertexRemovals {
     }
     if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(change_);
     const auto faces = mesh_.fill_hole(star.all_edges(), removal.triangles.all(), first_face(star));
-    gone.leading = CollapseVertex::kGone | receiver;
+    gone.leading = VertexRecord::kGone | receiver;
     if (state_.keep_events) keep_faces(removal);
     if (state_.keep_events)
-      state_.outcome.events.push_back({vertices_[receiver].source & CollapseVertex::kSourceMask,
-                                       gone.source & CollapseVertex::kSourceMask,
-                                       vertices_[receiver].position, false, faces});
+      state_.outcome.events.push_back({vertices_[receiver].source & VertexRecord::kSourceMask,
+                                       gone.source & VertexRecord::kSourceMask, vertices_[receiver].position,
+                                       false, faces});
     state_.faces -= star.closed ? 2 : 1;
     --state_.vertices;
     ++state_.outcome.collapses;
     const auto ring = std::span(star.target).first(star.neighbours());
     for (const std::uint32_t r : ring) {
       revive(r);
-      vertices_[r].source |= CollapseVertex::kTouched;
+      vertices_[r].source |= VertexRecord::kTouched;
       touched_.push_back(r);
     }
     if (state_.criteria == nullptr || !state_.criteria->bounds()) return;
@@ -591,7 +591,7 @@ class VertexRemovals {
       made.step = step;
       made.face = mesh_.face(h).source;
       for (std::uint32_t i = 0; i < 3; ++i) {
-        made.vertices[i] = vertices_[mesh_.origin(h + i)].source & CollapseVertex::kSourceMask;
+        made.vertices[i] = vertices_[mesh_.origin(h + i)].source & VertexRecord::kSourceMask;
         if constexpr (kAttributes) {
           const Wedges& wedges = state_.attributes->wedges();
           made.wedges[i] = wedges.source_corner(wedges[h + i]);
@@ -602,10 +602,10 @@ class VertexRemovals {
 
   /// Puts a vertex in the queue again whose star has changed.
   void revive(std::uint32_t v) {
-    CollapseVertex& vertex = vertices_[v];
-    if (vertex.has(CollapseVertex::kHasParked) || (Queue::kExact && !vertex.has(CollapseVertex::kLocked)))
+    VertexRecord& vertex = vertices_[v];
+    if (vertex.has(VertexRecord::kHasParked) || (Queue::kExact && !vertex.has(VertexRecord::kLocked)))
       queue_.insert_now(v);
-    vertex.source &= ~CollapseVertex::kHasParked;
+    vertex.source &= ~VertexRecord::kHasParked;
   }
 
   /// The corners of the triangle that holds v, by v's place in it; on a boundary or seam the ends of the new
@@ -653,8 +653,8 @@ class VertexRemovals {
   }
 
   /// Adds a share of the quadric of `gone` to that of `receiver`.
-  static void absorb(CollapseVertex& receiver, const CollapseVertex& gone, float share) {
-    CollapseVertex moved = gone;
+  static void absorb(VertexRecord& receiver, const VertexRecord& gone, float share) {
+    VertexRecord moved = gone;
     std::array<float, 3> d;
     for (std::size_t k = 0; k < 3; ++k) d[k] = receiver.position[k] - gone.position[k];
     moved.shift(d);
@@ -666,7 +666,7 @@ class VertexRemovals {
 
   DecimationState& state_;
   CollapseMesh& mesh_;
-  LargeArray<CollapseVertex>& vertices_;
+  LargeArray<VertexRecord>& vertices_;
   Queue queue_;
   VertexStars<kStars> stars_{mesh_, kAttributes ? &state_.attributes->wedges() : nullptr};
   RetriangulationBatch batch_, other_;

@@ -124,7 +124,7 @@ class VertexStars {
   }
 
   const CollapseMesh& mesh_;
-  const LargeArray<CollapseVertex>& vertices_;
+  const LargeArray<VertexRecord>& vertices_;
   const Wedges* wedges_;
   std::array<VertexStar, kStars> walked_;
   std::array<std::uint32_t, kStars> order_;

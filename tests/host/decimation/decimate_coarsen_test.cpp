@@ -28,8 +28,8 @@ namespace {
 
 using detail::CoarsenBatch;
 using detail::CollapseMesh;
-using detail::CollapseVertex;
 using detail::VertexRange;
+using detail::VertexRecord;
 using test::ring_of;
 
 CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
@@ -40,7 +40,7 @@ CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
 }
 
 /// Of both quadrics, at q.
-double cost_of(const CollapseVertex& p, const CollapseVertex& q) {
+double cost_of(const VertexRecord& p, const VertexRecord& q) {
   std::array<double, 3> x;
   for (std::size_t k = 0; k < 3; ++k)
     x[k] = static_cast<double>(q.position[k]) - static_cast<double>(p.position[k]);
@@ -154,8 +154,8 @@ TEST_CASE("coarsening takes what costs little from its range alone, and leaves t
     CollapseMesh mesh = mesh_of(seed < 8 ? shape : spread(shape), seed);
     const std::uint32_t n = mesh.apex();
     const VertexRange range = seed % 2 == 0 ? VertexRange{0, n} : VertexRange{n / 8, n};
-    for (std::uint32_t v = 5; v < n; v += 31) mesh.vertices[v].source |= CollapseVertex::kLocked;
-    std::vector<CollapseVertex> before;
+    for (std::uint32_t v = 5; v < n; v += 31) mesh.vertices[v].source |= VertexRecord::kLocked;
+    std::vector<VertexRecord> before;
     for (std::uint32_t v = 0; v < n; ++v) before.push_back(mesh.vertices[v]);
     std::vector<CollapseMesh::Face> faces_before;
     for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4) faces_before.push_back(mesh.face(h));
@@ -172,7 +172,7 @@ TEST_CASE("coarsening takes what costs little from its range alone, and leaves t
 
     std::size_t gone = 0;
     for (std::uint32_t v = 0; v < n; ++v) {
-      const CollapseVertex& vertex = mesh.vertices[v];
+      const VertexRecord& vertex = mesh.vertices[v];
       CHECK(vertex.position == before[v].position);
       if (!range.holds(v)) {
         CHECK(vertex.leading == before[v].leading);
@@ -180,14 +180,14 @@ TEST_CASE("coarsening takes what costs little from its range alone, and leaves t
         CHECK(vertex.weight == before[v].weight);
       }
       if (vertex.alive()) {
-        CHECK(!vertex.has(CollapseVertex::kTouched));
-        CHECK(!vertex.has(CollapseVertex::kHasParked));
+        CHECK(!vertex.has(VertexRecord::kTouched));
+        CHECK(!vertex.has(VertexRecord::kHasParked));
         CHECK(vertex.c <= half * 1.001f);
         continue;
       }
       ++gone;
       CHECK(range.holds(v));
-      CHECK(!vertex.has(CollapseVertex::kLocked));
+      CHECK(!vertex.has(VertexRecord::kLocked));
     }
     for (std::size_t f = 0; f < faces_before.size(); ++f) {
       const CollapseMesh::Face &face = mesh.face(static_cast<std::uint32_t>(4 * f)), &old = faces_before[f];
@@ -207,7 +207,7 @@ TEST_CASE("coarsening takes what costs little from its range alone, and leaves t
     std::ranges::sort(deferred);
     CHECK(std::ranges::adjacent_find(deferred) == deferred.end());
     for (std::uint32_t v = range.begin; v < range.end; ++v) {
-      if (before[v].has(CollapseVertex::kLocked) || !mesh.vertices[v].alive()) continue;
+      if (before[v].has(VertexRecord::kLocked) || !mesh.vertices[v].alive()) continue;
       const auto ring = ring_of(mesh, v);
       const auto leaves = [&](std::uint32_t r) { return !range.holds(r); };
       if (ring.size() <= CoarsenBatch::kMaxNeighbours && std::ranges::any_of(ring, leaves))

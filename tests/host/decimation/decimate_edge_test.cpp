@@ -521,7 +521,7 @@ TEST_CASE("the distance between the faces before and after a collapse", "[decima
     };
     const DVec3 p = inside(), q = inside(), x = inside();
 
-    detail::LargeArray<detail::CollapseVertex> vertices(corners);
+    detail::LargeArray<detail::VertexRecord> vertices(corners);
     for (std::size_t k = 0; k < corners; ++k) {
       vertices[k] = {};
       for (int i = 0; i < 3; ++i)

@@ -161,7 +161,7 @@ class Partitions {
   [[nodiscard]] std::vector<Known> known_outside(const Partition& partition) const {
     std::vector<Known> known;
     for (std::uint32_t v = 0; v < mesh_.apex() && partition.is_bounded(); ++v) {
-      const detail::CollapseVertex& vertex = mesh_.vertices[v];
+      const detail::VertexRecord& vertex = mesh_.vertices[v];
       const auto& [x, y, z] = vertex.position;
       if (!partition.holds(v)) known.push_back({{x, y, z, vertex.weight}, vertex.alive()});
     }

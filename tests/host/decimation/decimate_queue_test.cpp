@@ -22,8 +22,8 @@
 namespace vkmesh {
 namespace {
 
-using detail::CollapseVertex;
 using detail::EdgeBatch;
+using detail::VertexRecord;
 
 struct Plane {
   DVec3 normal, point;
@@ -44,7 +44,7 @@ double sum(const std::vector<Plane>& planes, const DVec3& x) {
 }
 
 /// The quadric of these planes about a place, summed in double.
-CollapseVertex vertex_at(const DVec3& place, const std::vector<Plane>& planes) {
+VertexRecord vertex_at(const DVec3& place, const std::vector<Plane>& planes) {
   std::array<double, 6> a{};
   std::array<double, 3> b{};
   double c = 0;
@@ -56,7 +56,7 @@ CollapseVertex vertex_at(const DVec3& place, const std::vector<Plane>& planes) {
     for (int k = 0; k < 3; ++k) b[static_cast<std::size_t>(k)] += w * offset * n[k];
     c += w * offset * offset;
   }
-  CollapseVertex v{};
+  VertexRecord v{};
   for (int k = 0; k < 3; ++k) v.position[static_cast<std::size_t>(k)] = static_cast<float>(place[k]);
   for (std::size_t k = 0; k < 6; ++k) v.a[k] = static_cast<float>(a[k]);
   for (std::size_t k = 0; k < 3; ++k) v.b[k] = static_cast<float>(b[k]);
@@ -208,7 +208,7 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
   };
   for (const std::size_t count : {1u, 5u, 16u, 100u, 128u}) {
     EdgeBatch optimal;
-    std::vector<CollapseVertex> p(count), q(count);
+    std::vector<VertexRecord> p(count), q(count);
     std::vector<std::vector<Plane>> planes(count);
     std::vector<DVec3> from(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -228,7 +228,7 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
       }
     }
     // In one array, out of order.
-    std::vector<CollapseVertex> vertices(2 * count);
+    std::vector<VertexRecord> vertices(2 * count);
     std::vector<EdgeBatch::Ends> ends(count);
     for (std::size_t i = 0; i < count; ++i)
       ends[i] = {static_cast<std::uint32_t>(count - 1 - i),
@@ -285,8 +285,8 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
     }
     // Locked ends stay.
     for (std::size_t i = 0; i < count; ++i) {
-      if (i % 2 == 0) p[i].source |= CollapseVertex::kLocked;
-      if (i % 3 == 0) q[i].source |= CollapseVertex::kLocked;
+      if (i % 2 == 0) p[i].source |= VertexRecord::kLocked;
+      if (i % 3 == 0) q[i].source |= VertexRecord::kLocked;
     }
     gather(optimal);
     detail::place_optimally(optimal, count);
@@ -354,15 +354,15 @@ TEST_CASE("what edges cost whose end moves, and which cost less than before, by 
     const DVec3 at_p = place(), at_q = place();
     const double weight = count % 2 == 0 ? 0.05 : 0.5;  // the lighter, the more edges cost less
     const std::vector<Plane> of_p = planes_at(at_p, 3, weight), of_q = planes_at(at_q, 4, weight);
-    const CollapseVertex p = vertex_at(at_p, of_p), q = vertex_at(at_q, of_q);
+    const VertexRecord p = vertex_at(at_p, of_p), q = vertex_at(at_q, of_q);
     std::vector<DVec3> at_r(count);
     std::vector<std::vector<Plane>> of_r(count);
-    std::vector<CollapseVertex> r(count);
+    std::vector<VertexRecord> r(count);
     for (std::size_t i = 0; i < count; ++i) {
       at_r[i] = place();
       of_r[i] = planes_at(at_r[i], 2, 0.6);
       r[i] = vertex_at(at_r[i], of_r[i]);
-      if (i % 5 == 4) r[i].source |= CollapseVertex::kLocked;
+      if (i % 5 == 4) r[i].source |= VertexRecord::kLocked;
     }
     const double collapse = sum(of_p, at_q) + sum(of_q, at_q);
     EdgeBatch batch;

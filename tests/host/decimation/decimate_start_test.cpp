@@ -28,8 +28,8 @@ namespace vkmesh {
 namespace {
 
 using detail::CollapseMesh;
-using detail::CollapseVertex;
 using detail::Partition;
+using detail::VertexRecord;
 using test::collapse_mesh_of;
 
 /// The same with other numbers for the points.
@@ -121,7 +121,7 @@ void check_quadrics(const IndexedFaceSet& mesh, const detail::ConstraintWeights&
   });
   std::size_t wrong = 0;
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
-    const CollapseVertex& vertex = built.vertices[v];
+    const VertexRecord& vertex = built.vertices[v];
     const auto& sum = expected.at[v];
     const double rounding = 1e-5 * sum[0];
     bool same = std::fabs(static_cast<double>(vertex.weight) - sum[0]) <= rounding;

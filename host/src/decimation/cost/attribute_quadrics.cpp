@@ -35,8 +35,8 @@ void add_square(std::array<float, 6>& a, const std::array<float, 3>& g, float w)
   a[5] += w * g[2] * g[2];
 }
 
-float quadric_at(const CollapseVertex& v, const std::array<float, 3>& x) {
-  CollapseVertex moved = v;
+float quadric_at(const VertexRecord& v, const std::array<float, 3>& x) {
+  VertexRecord moved = v;
   moved.shift(x);
   return moved.c;
 }
@@ -44,7 +44,7 @@ float quadric_at(const CollapseVertex& v, const std::array<float, 3>& x) {
 /// An end of an edge of a batch.
 void lock(EdgeBatch::Words& end, std::size_t lane) {
   float& flags = end[3][lane];
-  flags = std::bit_cast<float>(std::bit_cast<std::uint32_t>(flags) | CollapseVertex::kLocked);
+  flags = std::bit_cast<float>(std::bit_cast<std::uint32_t>(flags) | VertexRecord::kLocked);
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ void AttributeQuadrics::add_face(std::uint32_t f) {
         difference[j] = gradient[j] - mean[j];
         mean[j] += part * difference[j];
       }
-      CollapseVertex& vertex = apart_.empty() ? mesh_.vertices[origin[i]] : apart_[origin[i]];
+      VertexRecord& vertex = apart_.empty() ? mesh_.vertices[origin[i]] : apart_[origin[i]];
       add_square(vertex.a, difference, components_[k].cost * harmonic(area, weight));
     }
   }
@@ -216,7 +216,7 @@ void AttributeQuadrics::add_to(EdgeBatch& batch, std::span<const std::uint32_t> 
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const std::uint32_t h = edges[i], p = mesh_.origin(h), q = mesh_.target(h);
     const std::array<float, 3> d = between(p, q);
-    const auto stays = [&](std::uint32_t v) { return mesh_.vertices[v].has(CollapseVertex::kLocked); };
+    const auto stays = [&](std::uint32_t v) { return mesh_.vertices[v].has(VertexRecord::kLocked); };
     const bool p_stays = stays(p), q_stays = stays(q);
     if (wedges_.on_seam(p) && !wedges_.on_seam(q) && q_stays) lock(batch.p, i);
     if (wedges_.on_seam(q) && !wedges_.on_seam(p) && p_stays) lock(batch.q, i);
@@ -283,14 +283,14 @@ void AttributeQuadrics::collapse(std::uint32_t h, const std::array<float, 3>& mo
   plain_[kept].shift(move_kept);
   plain_[kept].add_quadric(plain_[gone]);
   wedges_.for_each_at(mesh_, kept, [&](std::uint32_t w) { move(w, move_kept); });
-  CollapseVertex& vertex = mesh_.vertices[kept];
+  VertexRecord& vertex = mesh_.vertices[kept];
   constexpr std::array<float, 3> kSamePlace = {0.0f, 0.0f, 0.0f};
   wedges_.for_each_pair(mesh_, h, [&](std::uint32_t from, std::uint32_t to) {
     move(from, move_gone);
     add_difference(to, from, weight_[from], kSamePlace, vertex.a, vertex.b, vertex.c);
     join(to, from, weight_[from], kSamePlace);
   });
-  if (keeps_changes_) keep_change(h, vertex.has(CollapseVertex::kMoved) || move_kept != kSamePlace);
+  if (keeps_changes_) keep_change(h, vertex.has(VertexRecord::kMoved) || move_kept != kSamePlace);
   wedges_.collapse(mesh_, h);
   deviation_[kept] = deviation(kept);
 }
@@ -317,7 +317,7 @@ void AttributeQuadrics::set(RetriangulationAttributes& batch, std::size_t lane,
                             std::span<const std::uint32_t> edges, std::size_t neighbours,
                             const SeamSides& sides) const {
   const std::size_t n = components_.size();
-  const CollapseVertex& left = apart_[mesh_.origin(edges[0])];
+  const VertexRecord& left = apart_[mesh_.origin(edges[0])];
   for (std::size_t k = 0; k < 6; ++k) batch.a[k][lane] = left.a[k];
   for (std::size_t k = 0; k < 3; ++k) batch.b[k][lane] = left.b[k];
   batch.c[lane] = left.c;
@@ -345,7 +345,7 @@ void AttributeQuadrics::distribute_quadric(std::span<const std::uint32_t> edges,
                                            std::size_t neighbour, float part) {
   const std::uint32_t v = mesh_.origin(edges[0]), receiver = mesh_.target(edges[neighbour]);
   const std::array<float, 3> d = between(receiver, v);
-  CollapseVertex &left = apart_[receiver], moved = apart_[v];
+  VertexRecord &left = apart_[receiver], moved = apart_[v];
   moved.shift({-d[0], -d[1], -d[2]});
   left.add_quadric(moved, part);
   for (std::size_t side = 0; side < sides.count(); ++side) {
@@ -392,7 +392,7 @@ DecimatedAttributes AttributeQuadrics::gather(std::span<const std::uint32_t> fac
     if (number[w] == kInvalid) {
       number[w] = static_cast<std::uint32_t>(result.source_corner.size());
       result.source_corner.push_back(wedges_.source_corner(w));
-      append_values(w, mesh_.vertices[mesh_.origin(h)].has(CollapseVertex::kMoved), result.values);
+      append_values(w, mesh_.vertices[mesh_.origin(h)].has(VertexRecord::kMoved), result.values);
     }
     corner = number[w];
   }

@@ -120,12 +120,12 @@ class AttributeQuadrics {
   std::span<const DecimateAttribute> attributes_;
   std::span<const std::uint32_t> corners_;
   std::vector<Component> components_;
-  std::vector<float> weight_;          // by wedge
-  std::vector<Function> function_;     // by wedge and component
-  std::vector<float> value_;           // the same: the input's
-  std::vector<CollapseVertex> plain_;  // the vertices with their geometric quadrics alone
-  std::vector<CollapseVertex> apart_;  // the vertices with the quadrics of attributes alone, for removals
-  std::vector<float> deviation_;       // by vertex
+  std::vector<float> weight_;        // by wedge
+  std::vector<Function> function_;   // by wedge and component
+  std::vector<float> value_;         // the same: the input's
+  std::vector<VertexRecord> plain_;  // the vertices with their geometric quadrics alone
+  std::vector<VertexRecord> apart_;  // the vertices with the quadrics of attributes alone, for removals
+  std::vector<float> deviation_;     // by vertex
   bool keeps_changes_ = false;
   std::uint32_t step_ = 0;
   DecimationChanges changes_;

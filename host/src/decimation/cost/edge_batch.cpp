@@ -23,7 +23,7 @@ struct Lane {
 
 // 1 or 0; by the flags among a vertex' words.
 [[gnu::always_inline]] inline std::int32_t is_locked(float source) {
-  return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(source) / CollapseVertex::kLocked & 1u);
+  return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(source) / VertexRecord::kLocked & 1u);
 }
 
 [[gnu::always_inline]] inline Lane lane_of(const EdgeBatch& batch, std::size_t i) {
@@ -47,7 +47,7 @@ struct Lane {
 /// Some of `count` records of vertices, those from number i on; their numbers are every `stride`-th of `ids`.
 /// The last comes again where there are no more.
 template <std::size_t kSome>
-[[gnu::always_inline]] inline std::array<const char*, kSome> records_of(const CollapseVertex* vertices,
+[[gnu::always_inline]] inline std::array<const char*, kSome> records_of(const VertexRecord* vertices,
                                                                         const std::uint32_t* ids,
                                                                         std::size_t stride, std::size_t i,
                                                                         std::size_t count) {
@@ -65,7 +65,7 @@ template <std::size_t kSome>
 // Turns records from rows to columns: lanes [0, count) of `to`.
 #if defined(VKMESH_HAS_CLONES)
 // The same, eight at a time; the compiler does not find that by itself.
-__attribute__((target("avx2"))) void gather_records(const CollapseVertex* vertices, const std::uint32_t* ids,
+__attribute__((target("avx2"))) void gather_records(const VertexRecord* vertices, const std::uint32_t* ids,
                                                     std::size_t stride, std::size_t count,
                                                     EdgeBatch::Words& to) {
   for (std::size_t i = 0; i < count; i += 8) {
@@ -81,7 +81,7 @@ __attribute__((target("avx2"))) void gather_records(const CollapseVertex* vertic
 
 __attribute__((target("default")))
 #endif
-void gather_records(const CollapseVertex* vertices, const std::uint32_t* ids, std::size_t stride,
+void gather_records(const VertexRecord* vertices, const std::uint32_t* ids, std::size_t stride,
                     std::size_t count, EdgeBatch::Words& to) {
   for (std::size_t i = 0; i < count; i += 4) {
     const auto r = records_of<4>(vertices, ids, stride, i, count);
@@ -95,12 +95,12 @@ void gather_records(const CollapseVertex* vertices, const std::uint32_t* ids, st
 
 }  // namespace
 
-void EdgeBatch::gather(const CollapseVertex* vertices, std::span<const Ends> ends) {
+void EdgeBatch::gather(const VertexRecord* vertices, std::span<const Ends> ends) {
   if (ends.empty()) return;
   gather_records(vertices, &ends[0][0], 2, ends.size(), p);
   gather_records(vertices, &ends[0][1], 2, ends.size(), q);
 }
-void EdgeBatch::gather_q(const CollapseVertex* vertices, std::span<const std::uint32_t> ids) {
+void EdgeBatch::gather_q(const VertexRecord* vertices, std::span<const std::uint32_t> ids) {
   gather_records(vertices, ids.data(), 1, ids.size(), q);
 }
 
@@ -207,7 +207,7 @@ VKMESH_CLONES void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::si
       });
 }
 
-VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const CollapseVertex& p, const CollapseVertex& q,
+VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const VertexRecord& p, const VertexRecord& q,
                                     float cost, std::size_t count) {
   const auto pa = p.a;
   const auto pb = p.b;

@@ -16,7 +16,7 @@ struct EdgeBatch {
   /// Kernels work on whole blocks of lanes: what lies in lanes that were not set does not matter.
   static constexpr std::size_t kBlock = 16;
   using Lanes = std::array<float, kSize>;
-  /// The sixteen words of a CollapseVertex.
+  /// The sixteen words of a VertexRecord.
   using Words = std::array<Lanes, 16>;
 
   alignas(64) Words p, q;
@@ -28,9 +28,9 @@ struct EdgeBatch {
   /// The numbers of the vertices p and q.
   using Ends = std::array<std::uint32_t, 2>;
   /// Sets a lane for each of these edges.
-  void gather(const CollapseVertex* vertices, std::span<const Ends> ends);
+  void gather(const VertexRecord* vertices, std::span<const Ends> ends);
   /// The same for q alone.
-  void gather_q(const CollapseVertex* vertices, std::span<const std::uint32_t> ids);
+  void gather_q(const VertexRecord* vertices, std::span<const std::uint32_t> ids);
 };
 
 /// An edge that is due, what it costs, and where its point goes; see EdgeBatch.
@@ -61,7 +61,7 @@ void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::size_t count);
 /// p is about to move to q at this cost, and with it the other ends of its edges are those in batch.q. Sets
 /// `cost` to what such an edge will cost with its point at q, and `end` to 1 where that is less than it costs
 /// now, at either end; else to 0. With the point at its other end it costs no less than it does.
-void find_moved_costs(EdgeBatch& batch, const CollapseVertex& p, const CollapseVertex& q, float cost,
+void find_moved_costs(EdgeBatch& batch, const VertexRecord& p, const VertexRecord& q, float cost,
                       std::size_t count);
 
 }  // namespace vkmesh::detail

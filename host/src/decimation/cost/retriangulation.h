@@ -52,7 +52,7 @@ struct RetriangulationBatch {
   alignas(64) std::array<Lanes, 3> v{};
   /// Where its neighbours are, counter-clockwise.
   alignas(64) std::array<std::array<Lanes, 3>, kMost> ring;
-  /// The quadric xᵀA x + 2 b·x + c about v, as CollapseVertex has it.
+  /// The quadric xᵀA x + 2 b·x + c about v, as VertexRecord has it.
   alignas(64) std::array<Lanes, 6> a;
   alignas(64) std::array<Lanes, 3> b;
   alignas(64) Lanes c;

@@ -240,7 +240,7 @@ class Wedges {
     if (boundary) marks_[v] |= kBoundary;
     if (seams == 0) return;
     marks_[v] |= kSeam;
-    if (boundary || seams != 2 || wedges != 2) mesh.vertices[v].source |= CollapseVertex::kLocked;
+    if (boundary || seams != 2 || wedges != 2) mesh.vertices[v].source |= VertexRecord::kLocked;
   }
 
   std::vector<std::uint32_t> of_;             // by half-edge of the mesh's own faces

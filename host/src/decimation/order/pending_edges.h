@@ -58,7 +58,7 @@ struct PendingEdges {
   void fetch_ends(const CollapseMesh& mesh, std::size_t some) {
     const std::size_t end = some < count - ends_fetched_ ? ends_fetched_ + some : count;
     const CollapseMesh::Face* const faces = mesh.faces();
-    const CollapseVertex* const vertices = mesh.vertices.data();
+    const VertexRecord* const vertices = mesh.vertices.data();
     for (std::size_t i = ends_fetched_; i < end; ++i) {
       const std::uint32_t h = ids[i], corner = h & 3u;
       const CollapseMesh::Face& face = faces[h >> 2];
@@ -95,7 +95,7 @@ struct PendingEdges {
   /// Walks around the ends of all due edges, one step of each in turn: one waits for all. `some` more steps.
   void walk(const CollapseMesh& mesh, std::size_t some) {
     const CollapseMesh::Face* const faces = mesh.faces();
-    const CollapseVertex* const vertices = mesh.vertices.data();
+    const VertexRecord* const vertices = mesh.vertices.data();
     while (some > 0 && walks_ > 0) {
       const std::size_t end = some < walks_ - walker_ ? walker_ + some : walks_;
       some -= end - walker_;

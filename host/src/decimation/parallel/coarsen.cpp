@@ -12,7 +12,7 @@ namespace vkmesh::detail {
 namespace {
 
 /// No edge is parked while coarsening.
-constexpr std::uint32_t kWent = CollapseVertex::kHasParked;
+constexpr std::uint32_t kWent = VertexRecord::kHasParked;
 /// Faces turn by 30 degrees at most.
 constexpr float kCosSmooth = 0.8660254f;
 /// Batches are taken from so many candidates that they stay in the second cache, and of distant ones:
@@ -38,7 +38,7 @@ RangeCoarsening::RangeCoarsening(DecimationState& state, const VertexRange& rang
       merger_(state.mesh) {}
 
 bool RangeCoarsening::is_candidate(std::uint32_t v) const {
-  return vertices_[v].alive() && !vertices_[v].has(CollapseVertex::kLocked);
+  return vertices_[v].alive() && !vertices_[v].has(VertexRecord::kLocked);
 }
 
 void RangeCoarsening::run_all() {
@@ -96,7 +96,7 @@ void RangeCoarsening::coarsen_batch() {
   for (const std::uint8_t i : std::span(due).first(due_count))
     at_target_[i].walk(mesh_, mesh_.twin(batch.ring[i].edge[batch.best_of(i)]));
   for (const std::uint8_t i : std::span(due).first(due_count)) attempt(i);
-  for (const std::uint32_t v : touched_) vertices_[v].source &= ~CollapseVertex::kTouched;
+  for (const std::uint32_t v : touched_) vertices_[v].source &= ~VertexRecord::kTouched;
   touched_.clear();
 }
 
@@ -106,8 +106,8 @@ void RangeCoarsening::attempt(std::size_t i) {
   const std::uint32_t best = batch.best_of(i), h = at_p.edge[best];
   const std::uint32_t p = batch.vertex[i], q = at_p.vertex[best];
   const std::uint32_t size = at_q.size(mesh_.twin(h));
-  const CollapseVertex &vp = vertices_[p], &vq = vertices_[q];
-  if (size == 0 || ((vp.source | vq.source) & CollapseVertex::kTouched) != 0 || state_.reached()) return;
+  const VertexRecord &vp = vertices_[p], &vq = vertices_[q];
+  if (size == 0 || ((vp.source | vq.source) & VertexRecord::kTouched) != 0 || state_.reached()) return;
   if (!at_q.is_inside(range_)) {
     deferred_.push_back(p);
     return;
@@ -138,7 +138,7 @@ float cost_of_share(const CollapseMesh& mesh, double share) {
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t k = 0; k < kSample; ++k) {
     const auto v = static_cast<std::uint32_t>(spread_evenly(k, mesh.apex()));
-    if (mesh.vertices[v].alive() && !mesh.vertices[v].has(CollapseVertex::kLocked)) chosen.push_back(v);
+    if (mesh.vertices[v].alive() && !mesh.vertices[v].has(VertexRecord::kLocked)) chosen.push_back(v);
     if (chosen.size() < CoarsenBatch::kSize && k + 1 < kSample) continue;
     batch->set(mesh, chosen, {0, mesh.apex()});
     for (std::size_t i = 0; i < batch->count; ++i)

@@ -39,7 +39,7 @@ class RangeCoarsening {
 
   DecimationState& state_;
   CollapseMesh& mesh_;
-  LargeArray<CollapseVertex>& vertices_;
+  LargeArray<VertexRecord>& vertices_;
   VertexRange range_;
   float max_cost_;
   EdgeMerger<false> merger_;

@@ -12,12 +12,12 @@ constexpr std::uint32_t kMaxNeighbours = CoarsenBatch::kMaxNeighbours;
 
 // The first words of the neighbours' records, and what their quadrics say at their own places.
 #if defined(VKMESH_HAS_CLONES)
-__attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* vertices, CoarsenBatch& batch) {
+__attribute__((target("avx2"))) void gather_neighbours(const VertexRecord* vertices, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     CoarsenBatch::Around& around = batch.around[i];
     std::array<const void*, 8> rows;
     for (std::size_t k = 0; k < 8; ++k) {
-      const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k]];
+      const VertexRecord& neighbour = vertices[batch.ring[i].vertex[k]];
       rows[k] = &neighbour;
       around.c[k] = neighbour.c;
     }
@@ -28,13 +28,13 @@ __attribute__((target("avx2"))) void gather_neighbours(const CollapseVertex* ver
 
 __attribute__((target("default")))
 #endif
-void gather_neighbours(const CollapseVertex* vertices, CoarsenBatch& batch) {
+void gather_neighbours(const VertexRecord* vertices, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     CoarsenBatch::Around& around = batch.around[i];
     for (std::size_t k = 0; k < CoarsenBatch::kMaxNeighbours; k += 4) {
       std::array<const void*, 4> rows;
       for (std::size_t j = 0; j < 4; ++j) {
-        const CollapseVertex& neighbour = vertices[batch.ring[i].vertex[k + j]];
+        const VertexRecord& neighbour = vertices[batch.ring[i].vertex[k + j]];
         rows[j] = &neighbour;
         around.c[k + j] = neighbour.c;
       }
@@ -43,9 +43,9 @@ void gather_neighbours(const CollapseVertex* vertices, CoarsenBatch& batch) {
   }
 }
 
-VKMESH_CLONES void find_best(const CollapseVertex* vertices, const VertexRange& range, CoarsenBatch& batch) {
+VKMESH_CLONES void find_best(const VertexRecord* vertices, const VertexRange& range, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
-    const CollapseVertex& p = vertices[batch.vertex[i]];
+    const VertexRecord& p = vertices[batch.vertex[i]];
     const CoarsenBatch::Ring& ring = batch.ring[i];
     const CoarsenBatch::Around& around = batch.around[i];
     const auto& a = p.a;
@@ -71,7 +71,7 @@ VKMESH_CLONES void find_best(const CollapseVertex* vertices, const VertexRange& 
 
 void CoarsenBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> chosen,
                        const VertexRange& range) {
-  const CollapseVertex* const vertices = mesh.vertices.data();
+  const VertexRecord* const vertices = mesh.vertices.data();
   count = chosen.size();
   std::copy(chosen.begin(), chosen.end(), vertex.begin());
   for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[chosen[i]].leading);

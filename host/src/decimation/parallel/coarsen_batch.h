@@ -33,7 +33,7 @@ struct CoarsenBatch {
     /// However many there are, nothing is to be foretold.
     void walk(const CollapseMesh& mesh, std::uint32_t start) {
       const CollapseMesh::Face* const faces = mesh.faces();
-      const CollapseVertex* const vertices = mesh.vertices.data();
+      const VertexRecord* const vertices = mesh.vertices.data();
       std::uint32_t at = start;
 #if defined(__GNUC__)
 #pragma GCC unroll 8

@@ -85,7 +85,7 @@ std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partition
   std::vector<std::uint8_t> partition(n + 1, 0);
   parallel_ranges(n, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const CollapseVertex& vertex = mesh.vertices[v];
+      const VertexRecord& vertex = mesh.vertices[v];
       prefetch_stream(&vertex);
       std::size_t at = 0;
       for (const std::vector<Split>& level : splits) at = 2 * at + half_of(level[at], vertex.position);

@@ -13,18 +13,18 @@ namespace vkmesh::detail {
 namespace {
 
 /// What a plane through a vertex adds to its quadric: its weight, and w n nᵀ. With a 0 more these are the
-/// words of a CollapseVertex from `weight` to `c`.
+/// words of a VertexRecord from `weight` to `c`.
 using PlaneWords = std::array<float, 8>;
-static_assert(offsetof(CollapseVertex, weight) == 16 && offsetof(CollapseVertex, a) == 20 &&
-              offsetof(CollapseVertex, c) == 44);
+static_assert(offsetof(VertexRecord, weight) == 16 && offsetof(VertexRecord, a) == 20 &&
+              offsetof(VertexRecord, c) == 44);
 
 [[gnu::always_inline]] inline PlaneWords words_of(float x, float y, float z, float w) {
   const float wx = w * x, wy = w * y, wz = w * z;
   return {w, wx * x, wx * y, wx * z, wy * y, wy * z, wz * z, 0.0f};
 }
 
-[[gnu::always_inline]] inline void add_words(CollapseVertex& v, const PlaneWords& words) {
-  char* const to = reinterpret_cast<char*>(&v) + offsetof(CollapseVertex, weight);
+[[gnu::always_inline]] inline void add_words(VertexRecord& v, const PlaneWords& words) {
+  char* const to = reinterpret_cast<char*>(&v) + offsetof(VertexRecord, weight);
   add_four(words.data(), to);
   add_four(words.data() + 4, to + 16);
 }
@@ -55,7 +55,7 @@ VKMESH_CLONES void find_planes(FaceBatch& batch) {
 void add_faces(CollapseMesh& mesh, const VertexRanges::Range& range) {
   constexpr std::uint32_t kAhead = 16;
   const auto last = static_cast<std::uint32_t>(mesh.face_count()) - 1;
-  CollapseVertex* const vertices = mesh.vertices.data();
+  VertexRecord* const vertices = mesh.vertices.data();
   FaceBatch batch;
   range.for_each_range([&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t first = begin; first < end; first += FaceBatch::kSize) {

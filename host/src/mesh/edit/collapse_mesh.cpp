@@ -155,8 +155,8 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
   const std::size_t corners = 3 * face_count_;
   // The half-edges that leave each vertex, where the vertices will be: that is memory to be had at no cost.
   constexpr std::size_t kUsual = 6, kAhead = 64, kTail = kAhead + kUsual;  // what most vertices have
-  constexpr std::size_t kWords = sizeof(CollapseVertex) / sizeof(std::uint32_t);
-  vertices = LargeArray<CollapseVertex>(std::max(vertex_count + 1, (corners + kTail + kWords - 1) / kWords));
+  constexpr std::size_t kWords = sizeof(VertexRecord) / sizeof(std::uint32_t);
+  vertices = LargeArray<VertexRecord>(std::max(vertex_count + 1, (corners + kTail + kWords - 1) / kWords));
   auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
   for (std::size_t i = 0; i < kTail; ++i) leaving[corners + i] = 0;
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end

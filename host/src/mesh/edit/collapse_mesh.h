@@ -19,7 +19,7 @@ namespace vkmesh::detail {
 /// What decimation knows of a vertex, in one cache line: its place, the quadric Σ w (n·(x − position) − d)²
 /// of the planes that it stands for as xᵀA x + 2 b·x + c about its place, the sum of their weights, and where
 /// its fan begins.
-struct alignas(64) CollapseVertex {
+struct alignas(64) VertexRecord {
   std::array<float, 3> position;
   std::uint32_t source;  // its number in the input, and flags
   float weight;
@@ -66,13 +66,13 @@ struct alignas(64) CollapseVertex {
     c = sum > 0 ? sum : 0.0f;
   }
   /// Adds a share of a quadric about the same point.
-  [[gnu::always_inline]] void add_quadric(const CollapseVertex& of, float share = 1) {
+  [[gnu::always_inline]] void add_quadric(const VertexRecord& of, float share = 1) {
     for (std::size_t k = 0; k < 6; ++k) a[k] += share * of.a[k];
     for (std::size_t k = 0; k < 3; ++k) b[k] += share * of.b[k];
     c += share * of.c;
   }
 };
-static_assert(sizeof(CollapseVertex) == 64);
+static_assert(sizeof(VertexRecord) == 64);
 
 /// Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
 [[gnu::always_inline]] inline float quadric_value(const std::array<float, 6>& a,
@@ -246,7 +246,7 @@ class CollapseMesh {
     vertices[q].leading = to_a;
     if (a != apex_) vertices[a].leading = from_a;
     if (b != apex_) vertices[b].leading = from_b;
-    vertices[p].leading = CollapseVertex::kGone | q;
+    vertices[p].leading = VertexRecord::kGone | q;
     set_twins(from_a, to_a);
     set_twins(from_b, to_b);
     remove(h >> 2);
@@ -273,7 +273,7 @@ class CollapseMesh {
                                          std::span<const std::array<std::uint8_t, 3>> triangles,
                                          std::size_t first = 0);
 
-  LargeArray<CollapseVertex> vertices;
+  LargeArray<VertexRecord> vertices;
 
  private:
   void remove(std::uint32_t f) {
