@@ -50,7 +50,7 @@ double dot(const DVec3& a, const DVec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Faces of different groups have a interface between them.
+/// Faces of different groups have a seam between them.
 std::uint32_t group_of(std::uint32_t face) {
   return face / 4 % 3;
 }
@@ -81,10 +81,10 @@ class Sums {
       if (other != faces.end()) {
         const DVec3& beyond = other->second.area;
         const double cosine = dot(area, beyond) / std::sqrt(dot(area, area) * dot(beyond, beyond));
-        const bool crease = cosine < weights.crease_cosine, interface = face.group != other->second.group;
-        weight = std::max(crease ? weights.crease : 0, interface ? weights.interface : 0);
+        const bool crease = cosine < weights.crease_cosine, seam = face.group != other->second.group;
+        weight = std::max(crease ? weights.crease : 0, seam ? weights.seam : 0);
         creases += crease ? 1 : 0;
-        seams_in_creases += crease && interface ? 1 : 0;
+        seams_in_creases += crease && seam ? 1 : 0;
       }
       for (const std::uint32_t v : {ends.first, ends.second})
         add(v, cross(edge, area), weight * dot(edge, edge));
@@ -161,7 +161,7 @@ TEST_CASE("decimation: quadrics start as the sums over the planes of faces, boun
   }
 }
 
-TEST_CASE("decimation: a vertex where threads partition the vertices has all its faces", "[decimate]") {
+TEST_CASE("decimation: a vertex where threads divide the vertices has all its faces", "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
   IndexedFaceSet mesh = test::grid(46, 40);
   test::jitter(mesh, 0.2f, 1);
