@@ -27,7 +27,7 @@ std::vector<std::uint32_t> collect(std::size_t count, F&& f) {
                               List list;
                               std::array<std::uint32_t, kBlock> some;
                               for (std::size_t first = begin; first < end; first += kBlock) {
-                                std::size_t found = 0;  // with no jump, which could not be foretold
+                                std::size_t found = 0;  // branchless: the branch is unpredictable
                                 for (std::size_t i = first; i < std::min(first + kBlock, end); ++i) {
                                   some[found] = static_cast<std::uint32_t>(i);
                                   found += f(some[found]) ? 1 : 0;

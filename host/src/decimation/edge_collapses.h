@@ -90,7 +90,7 @@ class EdgeCollapses {
       std::uint32_t* const ids = block.ids.data();
       EdgeBatch::Ends* const ends = block.ends.data();
       std::uint8_t* const numbers = block.number.data();
-      // Nothing foretells which faces are left, so there is no jump.
+      // Branchless: which faces are left is unpredictable.
       std::uint32_t* const alive = block.alive.data();
       std::size_t left = 0, count = 0;
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
@@ -107,7 +107,7 @@ class EdgeCollapses {
         std::uint32_t tags = 0;
         for (std::uint32_t i = 0; i < 3; ++i) {
           const std::uint32_t h = 4 * f + i;
-          const std::uint32_t first = h < face.twin[i] ? 1 : 0;  // half of them; nothing foretells which
+          const std::uint32_t first = h < face.twin[i] ? 1 : 0;  // half of them, unpredictable
           tags |= first << i;
           ids[count] = h;
           ends[count] = {face.origin[i], face.origin[i < 2 ? i + 1 : 0]};
@@ -193,12 +193,12 @@ class EdgeCollapses {
   static constexpr std::size_t kFirstFaces = 1 << 12;
   // Edges of so many faces, and from where to where they go.
   struct First {
-    static constexpr std::size_t kMost = 3 * kFirstFaces + 1;  // one more is written
+    static constexpr std::size_t kMaxEdges = 3 * kFirstFaces + 1;  // one more is written
     std::vector<std::uint32_t> alive = std::vector<std::uint32_t>(kFirstFaces);
-    std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(kMost);
-    std::vector<EdgeBatch::Ends> ends = std::vector<EdgeBatch::Ends>(kMost);
-    std::vector<std::uint8_t> number = std::vector<std::uint8_t>(kMost);
-    std::vector<float> cost = std::vector<float>(kMost);
+    std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(kMaxEdges);
+    std::vector<EdgeBatch::Ends> ends = std::vector<EdgeBatch::Ends>(kMaxEdges);
+    std::vector<std::uint8_t> number = std::vector<std::uint8_t>(kMaxEdges);
+    std::vector<float> cost = std::vector<float>(kMaxEdges);
     EdgeBatch batch;
     LocalChange change;
     std::size_t count = 0;
@@ -258,7 +258,7 @@ class EdgeCollapses {
   /// Tells those that are due from those that go back at what they cost now.
   void evaluate(Pending& b) {
     if (b.count == 0) return;
-    // Conditions that cannot be foretold count, and do not jump.
+    // Branchless: the conditions are unpredictable.
     std::size_t live = 0;
     std::array<EdgeBatch::Ends, Queue::kBatch> ends;
     const std::uint32_t interface = share_->partition.is_bounded() ? 1u << CollapseMesh::kInterfaceShift : 0;
@@ -321,8 +321,8 @@ class EdgeCollapses {
     }
   }
 
-  /// Of what is taken a fifth is due, and a ring has six vertices or so. Numbers that stay the same can be
-  /// foretold.
+  /// Of what is taken a fifth is due, and a ring has six vertices or so. Constant
+  /// trip counts are predictable.
   static constexpr std::size_t kFetches = 12, kWalkSteps = 32;
 
   /// Tries the edges of the first batch, and in between brings on the others a little.

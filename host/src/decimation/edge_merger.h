@@ -87,7 +87,7 @@ class EdgeMerger {
       const Wedges& wedges = state.attributes->wedges();
       if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
     }
-    // With no jump, which nothing could foretell.
+    // Branchless: which end stays is unpredictable.
     const std::uint32_t if_p = 0u - static_cast<std::uint32_t>(keep_p), kept = q ^ ((p ^ q) & if_p);
     const std::uint32_t h = due.half_edge ^ ((due.half_edge ^ mesh_.twin(due.half_edge)) & if_p);
     return {h, p ^ q ^ kept, kept, keep_p ? rings.q : rings.p, keep_p ? rings.from_q : rings.from_p};

@@ -138,13 +138,13 @@ class VertexRemovals {
  private:
   static constexpr float kNone = std::numeric_limits<float>::infinity();
   static constexpr std::size_t kStars = Queue::kExact ? 1 : 512;
-  static constexpr std::size_t kMost = RetriangulationBatch::kMost;
-  static_assert(CollapseMesh::kMaxHoleEdges >= kMost + 1);
+  static constexpr std::size_t kMaxNeighbours = RetriangulationBatch::kMaxNeighbours;
+  static_assert(CollapseMesh::kMaxHoleEdges >= kMaxNeighbours + 1);
 
   using Triangle = std::array<std::uint8_t, 3>;
   /// With what closes the boundary; each before those beyond its new edges.
   struct Triangles {
-    std::array<Triangle, kMost> of;
+    std::array<Triangle, kMaxNeighbours> of;
     std::uint8_t count = 0;
     [[nodiscard]] std::span<const Triangle> all() const { return std::span(of).first(count); }
   };
@@ -178,7 +178,7 @@ class VertexRemovals {
   template <class Use>
   void evaluate(Use&& use) {
     const std::span<const std::uint32_t> order = stars_.in_order();
-    for (std::size_t n = 1; n <= kMost; ++n)
+    for (std::size_t n = 1; n <= kMaxNeighbours; ++n)
       for (std::size_t from = stars_.first(n); from < stars_.first(n + 1);
            from += RetriangulationBatch::kLanes) {
         const std::size_t count = std::min(stars_.first(n + 1) - from, RetriangulationBatch::kLanes);
@@ -346,7 +346,7 @@ class VertexRemovals {
 
   [[nodiscard]] bool meets_criteria(const VertexStar& star, const Triangles& triangles) {
     record_removal(star, triangles);
-    std::array<std::size_t, kMost> gained{};
+    std::array<std::size_t, kMaxNeighbours> gained{};
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) { ++gained[a], ++gained[b]; });
     for (std::size_t i = 0; i < star.neighbours(); ++i)
       if (gained[i] > 1)
@@ -431,7 +431,7 @@ class VertexRemovals {
   [[nodiscard]] static Triangles triangles_of(const RetriangulationBatch& batch, std::size_t lane,
                                               const VertexStar& star) {
     Triangles triangles;
-    std::array<std::array<std::uint8_t, 2>, kMost> parts;
+    std::array<std::array<std::uint8_t, 2>, kMaxNeighbours> parts;
     std::size_t left = 0;
     const auto last = static_cast<std::uint8_t>(star.neighbours() - 1);
     if (!star.closed) triangles.of[triangles.count++] = {0, last, static_cast<std::uint8_t>(last + 1)};
@@ -491,9 +491,10 @@ class VertexRemovals {
   [[nodiscard]] bool folds_over(const VertexStar& star, const Triangles& triangles) const {
     constexpr double kAgainst2 = 0.25;  // the cosine, squared
     const std::size_t n = star.neighbours();
-    std::array<Vector, kMost> normals;
-    std::array<float, kMost> squared;
-    std::array<std::array<std::uint8_t, kMost>, kMost> below;  // by a new edge the triangle before it
+    std::array<Vector, kMaxNeighbours> normals;
+    std::array<float, kMaxNeighbours> squared;
+    std::array<std::array<std::uint8_t, kMaxNeighbours>, kMaxNeighbours>
+        below;  // by a new edge the triangle before it
     bool against = false;
     float after = 1;
     for (std::size_t t = star.closed ? 0 : 1; t < triangles.count; ++t) {

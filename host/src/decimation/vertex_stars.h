@@ -17,11 +17,11 @@ namespace vkmesh::detail {
 /// What leaves a vertex counter-clockwise, and where to. A boundary vertex has the apex at the end of the
 /// last.
 struct VertexStar {
-  static constexpr std::size_t kMost = RetriangulationBatch::kMost;  // neighbours
+  static constexpr std::size_t kMaxNeighbours = RetriangulationBatch::kMaxNeighbours;
 
   std::uint32_t vertex, edges;  // edges: how many
   bool closed;
-  std::array<std::uint32_t, kMost + 1> edge, target;
+  std::array<std::uint32_t, kMaxNeighbours + 1> edge, target;
   SeamSides sides;  // with attributes
 
   [[nodiscard]] std::size_t neighbours() const { return closed ? edges : edges - 1; }
@@ -37,7 +37,7 @@ class VertexStars {
       : mesh_(mesh), vertices_(mesh.vertices), wedges_(wedges) {}
 
   /// Walks around these vertices, one step of each in turn: one waits for all. Puts their stars in
-  /// order of their numbers of neighbours; has_too_many(v) is called for those of more than kMost.
+  /// order of their numbers of neighbours; has_too_many(v) is called for those of more than kMaxNeighbours.
   template <class TooMany>
   void walk(std::span<const std::uint32_t> ids, TooMany&& has_too_many) {
     std::array<std::uint32_t, kStars> at, start, who;
@@ -50,7 +50,7 @@ class VertexStars {
       walked_[i].closed = true;
     }
     std::size_t left = ids.size();
-    for (std::uint32_t step = 0; step <= kMost && left > 0; ++step) {
+    for (std::uint32_t step = 0; step <= kMaxNeighbours && left > 0; ++step) {
       const std::size_t now = left;
       left = 0;
       for (std::size_t i = 0; i < now; ++i) {
@@ -69,10 +69,10 @@ class VertexStars {
       }
     }
     for (std::size_t i = 0; i < left; ++i) walked_[who[i]].edges = kTooMany;
-    std::array<std::uint32_t, kMost + 2> first{};
+    std::array<std::uint32_t, kMaxNeighbours + 2> first{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
       VertexStar& star = walked_[i];
-      if (star.edges == kTooMany || star.neighbours() > kMost) {
+      if (star.edges == kTooMany || star.neighbours() > kMaxNeighbours) {
         star.edges = kTooMany;
         has_too_many(star.vertex);
         continue;
@@ -97,12 +97,12 @@ class VertexStars {
   /// Indices in order of the numbers of neighbours, but for those of too many. Those of n neighbours begin at
   /// first(n), up to first(n + 1).
   [[nodiscard]] std::span<const std::uint32_t> in_order() const {
-    return std::span(order_).first(first_[kMost + 1]);
+    return std::span(order_).first(first_[kMaxNeighbours + 1]);
   }
   [[nodiscard]] std::size_t first(std::size_t neighbours) const { return first_[neighbours]; }
 
  private:
-  static constexpr std::size_t kMost = VertexStar::kMost;
+  static constexpr std::size_t kMaxNeighbours = VertexStar::kMaxNeighbours;
   static constexpr std::uint32_t kTooMany = ~0u;
 
   void put_apex_last(VertexStar& star) const {
@@ -128,7 +128,7 @@ class VertexStars {
   const Wedges* wedges_;
   std::array<VertexStar, kStars> walked_;
   std::array<std::uint32_t, kStars> order_;
-  std::array<std::uint32_t, kMost + 2> first_{};  // of each number of neighbours, in order_
+  std::array<std::uint32_t, kMaxNeighbours + 2> first_{};  // of each number of neighbours, in order_
 };
 
 }  // namespace vkmesh::detail

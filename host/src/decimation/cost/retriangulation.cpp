@@ -22,7 +22,8 @@
 namespace vkmesh::detail {
 namespace {
 
-constexpr std::size_t kLanes = RetriangulationBatch::kLanes, kMost = RetriangulationBatch::kMost,
+constexpr std::size_t kLanes = RetriangulationBatch::kLanes,
+                      kMaxNeighbours = RetriangulationBatch::kMaxNeighbours,
                       kPairs = RetriangulationBatch::kPairs;
 constexpr std::size_t kTriples = RetriangulationAttributes::kTriples;
 using Lanes = RetriangulationBatch::Lanes;
@@ -53,16 +54,17 @@ using Vectors = std::array<Lanes, 3>;
 
 /// What is known of a batch on the way to its result. Lengths are scaled.
 struct alignas(64) Work {
-  std::array<Vectors, kMost> ring;
+  std::array<Vectors, kMaxNeighbours> ring;
   std::array<Vectors, kPairs> cross;  // of two neighbours
   std::array<Lanes, kPairs> distance2;
   Vectors up;
-  std::array<Vectors, kMost> face;          // of v, by the first neighbour: twice its area vector
-  std::array<Lanes, kMost> quarter;         // of twice its area
-  std::array<Lanes, kMost> limit, spoke;    // least product with a unit normal, squared; weight of a crossing
-  std::array<Lanes, kMost> reliable;        // 0: the face has no reliable normal; else kNone
-  std::array<Lanes, kPairs> ahead, behind;  // max(0, left), max(0, -left)
-  std::array<Lanes, kPairs> inside, outside;  // what a new edge crosses where v lies left of it, and right
+  std::array<Vectors, kMaxNeighbours> face;   // of v, by the first neighbour: twice its area vector
+  std::array<Lanes, kMaxNeighbours> quarter;  // of twice its area
+  std::array<Lanes, kMaxNeighbours> limit,
+      spoke;  // least product with a unit normal, squared; weight of a crossing
+  std::array<Lanes, kMaxNeighbours> reliable;  // 0: the face has no reliable normal; else kNone
+  std::array<Lanes, kPairs> ahead, behind;     // max(0, left), max(0, -left)
+  std::array<Lanes, kPairs> inside, outside;   // what a new edge crosses where v lies left of it, and right
   std::array<Lanes, kTriples> at_v, total;
   std::array<Lanes, kPairs> best, error;
   Lanes scale, back2, back4, rounding2, area, along0, along1, along2, base, of_length;
@@ -449,7 +451,7 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
 
 // Of the triangulations that were chosen.
 void sum_attributes(const RetriangulationBatch& batch, const Work& w, RetriangulationAttributes& attributes) {
-  std::array<std::pair<std::size_t, std::size_t>, kMost> parts;
+  std::array<std::pair<std::size_t, std::size_t>, kMaxNeighbours> parts;
   for (std::size_t l = 0; l < kLanes; ++l) {
     if (!(batch.error[l] < kNone)) continue;
     float sum = 0;

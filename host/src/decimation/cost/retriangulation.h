@@ -37,8 +37,8 @@ namespace vkmesh::detail {
 /// values and mean functions of its own, and is compared with itself alone.
 struct RetriangulationBatch {
   static constexpr std::size_t kLanes = 16;
-  static constexpr std::size_t kMost = 16;  // neighbours
-  static constexpr std::size_t kPairs = kMost * (kMost - 1) / 2;
+  static constexpr std::size_t kMaxNeighbours = 16;
+  static constexpr std::size_t kPairs = kMaxNeighbours * (kMaxNeighbours - 1) / 2;
   using Lanes = std::array<float, kLanes>;
 
   /// Of neighbours a < b.
@@ -51,7 +51,7 @@ struct RetriangulationBatch {
   /// Where v is.
   alignas(64) std::array<Lanes, 3> v{};
   /// Where its neighbours are, counter-clockwise.
-  alignas(64) std::array<std::array<Lanes, 3>, kMost> ring;
+  alignas(64) std::array<std::array<Lanes, 3>, kMaxNeighbours> ring;
   /// The quadric xᵀA x + 2 b·x + c about v, as VertexRecord has it.
   alignas(64) std::array<Lanes, 6> a;
   alignas(64) std::array<Lanes, 3> b;
@@ -80,7 +80,7 @@ struct RetriangulationBatch {
 /// What attributes add to the holes of a batch. Differences of values count `cost` times their square.
 struct RetriangulationAttributes {
   using Lanes = RetriangulationBatch::Lanes;
-  static constexpr std::size_t kMost = RetriangulationBatch::kMost;
+  static constexpr std::size_t kMaxNeighbours = RetriangulationBatch::kMaxNeighbours;
 
   // Input.
 
@@ -88,7 +88,7 @@ struct RetriangulationAttributes {
   struct OnSide {
     alignas(64) Lanes off{};  // of the mean function at v
     alignas(64) std::array<Lanes, 3> gradient{};
-    alignas(64) std::array<Lanes, kMost> ring{};  // of neighbours
+    alignas(64) std::array<Lanes, kMaxNeighbours> ring{};  // of neighbours
   };
   struct Component {
     float cost;
@@ -111,8 +111,8 @@ struct RetriangulationAttributes {
 
   // Where a neighbour takes all over, on each side; of each triangle; of each new edge where v lies left of
   // it, right of it, and what counts.
-  alignas(64) std::array<std::array<Lanes, 2>, kMost> receiver{};
-  static constexpr std::size_t kTriples = kMost * (kMost - 1) * (kMost - 2) / 6;
+  alignas(64) std::array<std::array<Lanes, 2>, kMaxNeighbours> receiver{};
+  static constexpr std::size_t kTriples = kMaxNeighbours * (kMaxNeighbours - 1) * (kMaxNeighbours - 2) / 6;
   alignas(64) std::array<Lanes, kTriples> at_v{};
   alignas(64) std::array<Lanes, RetriangulationBatch::kPairs> inside{}, outside{}, edge{};
 };

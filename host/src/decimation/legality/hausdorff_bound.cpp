@@ -27,7 +27,7 @@ double Overlay::reach2(const Polygon& polygon, const Triangle& triangle) {
 /// `inside`: what of the polygon lies over the triangle. The rest, in convex parts, comes to rest_.
 void Overlay::split(const Polygon& polygon, const Triangle& by, const DVec3& up, Polygon& inside) {
   inside = polygon;
-  std::array<double, Polygon::kMost> side;
+  std::array<double, Polygon::kMaxCorners> side;
   const auto measure = [&](const Polygon& part, std::size_t e) {
     const DVec3 &a = by[e], along = by[(e + 1) % 3] - a, across = glm::cross(up, along);
     double most = -std::numeric_limits<double>::infinity(), least = -most;
@@ -47,7 +47,7 @@ void Overlay::split(const Polygon& polygon, const Triangle& by, const DVec3& up,
   for (std::size_t e = 0; e < 3; ++e) {
     const auto [least, most] = measure(inside, e);
     if (least >= -kOnLine) continue;
-    if (most <= kOnLine || inside.size + 1 >= Polygon::kMost) {
+    if (most <= kOnLine || inside.size + 1 >= Polygon::kMaxCorners) {
       rest_.push_back(inside);
       inside.size = 0;
       return;

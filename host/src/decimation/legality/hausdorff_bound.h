@@ -37,8 +37,8 @@ class Overlay {
 
  private:
   struct Polygon {
-    static constexpr std::size_t kMost = 24;
-    std::array<DVec3, kMost> corner;
+    static constexpr std::size_t kMaxCorners = 24;
+    std::array<DVec3, kMaxCorners> corner;
     std::size_t size = 0;
     void add(const DVec3& p) { corner[size++] = p; }
   };

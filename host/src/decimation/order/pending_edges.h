@@ -16,9 +16,9 @@ namespace vkmesh::detail {
 
 /// The neighbours of a vertex but one, counter-clockwise, and the half-edges from it to them.
 struct WalkedRing {
-  static constexpr std::uint32_t kMost = 16, kTooLong = ~0u;
-  std::array<std::uint32_t, kMost> vertex, edge;  // the first `size` are meant
-  std::uint32_t size;                             // kTooLong when there are more
+  static constexpr std::uint32_t kMaxNeighbours = 16, kTooLong = ~0u;
+  std::array<std::uint32_t, kMaxNeighbours> vertex, edge;  // the first `size` are meant
+  std::uint32_t size;                                      // kTooLong when there are more
 
   [[nodiscard]] bool is_whole() const { return size != kTooLong; }
 };
@@ -62,7 +62,7 @@ struct PendingEdges {
     for (std::size_t i = ends_fetched_; i < end; ++i) {
       const std::uint32_t h = ids[i], corner = h & 3u;
       const CollapseMesh::Face& face = faces[h >> 2];
-      // Nothing foretells whether it is, so there is no jump: a vertex that is asked for anyway.
+      // Branchless: whether it is queued is unpredictable. Vertex 0 stands in for what is not needed.
       const std::uint32_t is = face.tags >> corner & 1u;
       prefetch(&vertices[face.origin[corner] & (0 - is)]);
       prefetch(&vertices[face.origin[CollapseMesh::kNextCorner[corner]] & (0 - is)]);
@@ -122,7 +122,7 @@ struct PendingEdges {
       if (end < walks_) return;
       walks_ = go_on_;
       walker_ = go_on_ = 0;
-      if (++steps_ < WalkedRing::kMost) continue;
+      if (++steps_ < WalkedRing::kMaxNeighbours) continue;
       for (std::size_t i = 0; i < walks_; ++i) walk_[i].ring->size = WalkedRing::kTooLong;
       walks_ = 0;
     }

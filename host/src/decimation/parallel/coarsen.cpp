@@ -11,8 +11,6 @@
 namespace vkmesh::detail {
 namespace {
 
-/// No edge is parked while coarsening.
-constexpr std::uint32_t kWent = VertexRecord::kHasParked;
 /// Faces turn by 30 degrees at most.
 constexpr float kCosSmooth = 0.8660254f;
 /// Batches are taken from so many candidates that they stay in the second cache, and of distant ones:
@@ -118,7 +116,7 @@ void RangeCoarsening::attempt(std::size_t i) {
   const EdgeRings rings{chosen(at_p.vertex, best + 1, batch.size[i] - 1), chosen(at_q.vertex, 0, size - 1),
                         chosen(at_p.edge, best + 1, batch.size[i] - 1), chosen(at_q.edge, 0, size - 1)};
   // The rings are as they were unless a vertex of theirs went.
-  if ((merger_.look_around(rings) & kWent) != 0) return;
+  if ((merger_.look_around(rings) & VertexRecord::kAbsorbed) != 0) return;
   const DueEdge edge{
       h,
       batch.cost_of(i),
@@ -128,7 +126,7 @@ void RangeCoarsening::attempt(std::size_t i) {
   if (merger_.judge(edge, p, q, rings, cos_deviation) != Legality::kLegal) return;
   merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q, rings), 0);
   touched_.push_back(q);
-  vertices_[p].source |= kWent;
+  vertices_[p].source |= VertexRecord::kAbsorbed;
 }
 
 float cost_of_share(const CollapseMesh& mesh, double share) {

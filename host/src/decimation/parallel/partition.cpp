@@ -96,7 +96,7 @@ std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partition
   for (std::size_t v = 0; v < partition.size(); ++v) labels[v] = partition[v] | Partition::kInner;
   mesh.vertex_ranges().for_each([&](const VertexRanges::Range& range) {
     range.for_each_face([&](std::uint32_t f) {
-      // Whether it is alive nothing foretells: no jump, and one that is gone has no first corner.
+      // Branchless: whether a face is alive is unpredictable. One that is gone has no first corner.
       const CollapseMesh::Face& face = mesh.face(4 * f);
       prefetch_stream(&face);
       const std::uint32_t a = std::min(face.origin[0], mesh.apex()), b = face.origin[1], c = face.origin[2];

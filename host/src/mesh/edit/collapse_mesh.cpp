@@ -91,7 +91,7 @@ class CollapseMesh::Fan {
 };
 
 /// The same for a few half-edges around an inner vertex, unrolled for each number of them: a loop whose end
-/// nothing foretells costs more than its body.
+/// is unpredictable costs more than its body.
 class CollapseMesh::SmallFan {
  public:
   /// Sets the twins of the half-edges before these if they are found to form one closed fan, which they may
@@ -99,17 +99,17 @@ class CollapseMesh::SmallFan {
   bool join(LargeArray<Face>& faces, std::span<const std::uint32_t> leaving) {
     switch (leaving.size()) {
       case 3:
-        return join_some<3>(faces, leaving.data());
+        return join_exactly<3>(faces, leaving.data());
       case 4:
-        return join_some<4>(faces, leaving.data());
+        return join_exactly<4>(faces, leaving.data());
       case 5:
-        return join_some<5>(faces, leaving.data());
+        return join_exactly<5>(faces, leaving.data());
       case 6:
-        return join_some<6>(faces, leaving.data());
+        return join_exactly<6>(faces, leaving.data());
       case 7:
-        return join_some<7>(faces, leaving.data());
+        return join_exactly<7>(faces, leaving.data());
       case 8:
-        return join_some<8>(faces, leaving.data());
+        return join_exactly<8>(faces, leaving.data());
       default:
         return false;
     }
@@ -117,8 +117,8 @@ class CollapseMesh::SmallFan {
 
  private:
   template <std::uint32_t kCount>
-  bool join_some(LargeArray<Face>& faces, const std::uint32_t* leaving) {
-    std::array<std::uint32_t, kMost> to, from, before, clockwise;
+  bool join_exactly(LargeArray<Face>& faces, const std::uint32_t* leaving) {
+    std::array<std::uint32_t, kMaxEdges> to, from, before, clockwise;
     std::fill(from.begin() + kCount, from.end(), kInvalid);  // of no half-edge
     for (std::uint32_t i = 0; i < kCount; ++i) {
       const std::uint32_t h = leaving[i], corner = h & 3u;
@@ -130,7 +130,7 @@ class CollapseMesh::SmallFan {
     }
     std::uint32_t different = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-      clockwise[i] = table_[to[i] % kTable] % kMost;
+      clockwise[i] = table_[to[i] % kTable] % kMaxEdges;
       different |= from[clockwise[i]] ^ to[i];
     }
     // All are found, and going on from one comes by all.
@@ -146,7 +146,7 @@ class CollapseMesh::SmallFan {
     return true;
   }
 
-  static constexpr std::uint32_t kMost = 8, kTable = 256;
+  static constexpr std::uint32_t kMaxEdges = 8, kTable = 256;
   std::array<std::uint8_t, kTable> table_{};  // by the low bits of `from`
 };
 

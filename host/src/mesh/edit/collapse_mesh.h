@@ -34,6 +34,8 @@ struct alignas(64) VertexRecord {
   static constexpr std::uint32_t kMoved = 1u << 29;
   static constexpr std::uint32_t kTouched = 1u << 30;    // a collapse of this batch has changed it
   static constexpr std::uint32_t kHasParked = 1u << 31;  // some edge at it is parked
+  /// Coarsening, which parks nothing, tags what it has removed.
+  static constexpr std::uint32_t kAbsorbed = kHasParked;
   static constexpr std::uint32_t kSourceMask = kLocked - 1;
 
   [[nodiscard]] bool has(std::uint32_t flag) const { return (source & flag) != 0; }
@@ -162,7 +164,7 @@ class CollapseMesh {
     return false;
   }
 
-  // From lists of three numbers of two bits: which corner it is, no jump could foretell.
+  // Packed 2-bit lookup table; branchless.
   [[nodiscard]] static std::uint32_t next(std::uint32_t h) {
     return (h & ~3u) | (0b00'10'01u >> 2 * (h & 3u) & 3u);
   }
@@ -198,7 +200,7 @@ class CollapseMesh {
 
   static constexpr std::uint32_t kNoneQueued = 0, kOneQueued = 1, kBothQueued = 2;
   /// Two half-edges have become the two of one edge, which is not parked, and queued by one of them, g in
-  /// doubt. Tells what there was before. With no jump: nothing foretells it. Edges to the apex are left
+  /// doubt. Returns what there was before. Branchless. Edges to the apex are left
   /// alone.
   std::uint32_t make_one(std::uint32_t g, std::uint32_t t) {
     Face &one = face(g), &other = face(t);
