@@ -404,7 +404,7 @@ class EdgeCollapses {
   [[nodiscard]] Legality judge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
                                EdgeRings& rings) {
     const Due& due = b.due[i];
-    if (due.end == 3) return Legality::kLocked;
+    if (due.end == EdgeBatch::kLocked) return Legality::kLocked;
     if constexpr (kAttributes)
       if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
     if (merger_.exceeds_error(share_->state, due, p, q)) return Legality::kError;
@@ -554,7 +554,7 @@ class EdgeCollapses {
       }
       for (std::size_t i = 0; i < moved.size(); ++i) {
         moved[i].cost = batch_.cost[i];
-        moved[i].is_less = batch_.end[i] != 0;
+        moved[i].is_less = batch_.falls[i] != 0;
       }
     });
   }

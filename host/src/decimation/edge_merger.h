@@ -36,7 +36,7 @@ class EdgeMerger {
   /// Where the kept vertex comes to lie.
   [[nodiscard]] static std::array<float, 3> place_of(const VertexRecord& p, const VertexRecord& q,
                                                      std::int32_t end, const std::array<float, 3>& x) {
-    if (end != 0) return end == 1 ? p.position : q.position;
+    if (end != EdgeBatch::kFree) return end == EdgeBatch::kAtP ? p.position : q.position;
     return {p.position[0] + x[0], p.position[1] + x[1], p.position[2] + x[2]};
   }
 
@@ -82,10 +82,10 @@ class EdgeMerger {
     const bool is_first =
         (vertices_[p].source & VertexRecord::kSourceMask) < (vertices_[q].source & VertexRecord::kSourceMask);
     bool keep_p = (at_p > at_q) | ((at_p == at_q) & is_first);
-    if (due.end != 0) keep_p = due.end == 1;
+    if (due.end != EdgeBatch::kFree) keep_p = due.end == EdgeBatch::kAtP;
     if constexpr (kAttributes) {
       const Wedges& wedges = state.attributes->wedges();
-      if (due.end == 0 && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
+      if (due.end == EdgeBatch::kFree && wedges.on_seam(p) != wedges.on_seam(q)) keep_p = wedges.on_seam(p);
     }
     // Branchless: which end stays is unpredictable.
     const std::uint32_t if_p = 0u - static_cast<std::uint32_t>(keep_p), kept = q ^ ((p ^ q) & if_p);

@@ -281,7 +281,8 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
             kRounding);
       const double at_p = sum(planes[i], from[i]), at_q = sum(planes[i], to);
       CHECK(std::fabs(std::min(at_p, at_q) - static_cast<double>(end.cost[i])) < kRounding);
-      if (std::fabs(at_p - at_q) > kRounding) CHECK(end.end[i] == (at_p < at_q ? 1 : 2));
+      if (std::fabs(at_p - at_q) > kRounding)
+        CHECK(end.end[i] == (at_p < at_q ? EdgeBatch::kAtP : EdgeBatch::kAtQ));
     }
     // Locked ends stay.
     for (std::size_t i = 0; i < count; ++i) {
@@ -291,9 +292,10 @@ TEST_CASE("quadric errors are sums over planes, and optimal places are least, by
     gather(optimal);
     detail::place_optimally(optimal, count);
     for (std::size_t i = 0; i < count; ++i) {
-      CHECK(optimal.end[i] == (i % 2 == 0 ? 1 : 0) + (i % 3 == 0 ? 2 : 0));
-      if (optimal.end[i] == 1) CHECK((optimal.x[0][i] == 0 && optimal.x[1][i] == 0 && optimal.x[2][i] == 0));
-      if (optimal.end[i] == 2) CHECK(optimal.x[0][i] == q[i].position[0] - p[i].position[0]);
+      CHECK(optimal.end[i] == (i % 2 == 0 ? EdgeBatch::kAtP : 0) + (i % 3 == 0 ? EdgeBatch::kAtQ : 0));
+      if (optimal.end[i] == EdgeBatch::kAtP)
+        CHECK((optimal.x[0][i] == 0 && optimal.x[1][i] == 0 && optimal.x[2][i] == 0));
+      if (optimal.end[i] == EdgeBatch::kAtQ) CHECK(optimal.x[0][i] == q[i].position[0] - p[i].position[0]);
     }
   }
 }
@@ -378,7 +380,7 @@ TEST_CASE("what edges cost whose end moves, and which cost less than before, by 
       const double now = collapse + sum(of_r[i], at_q);
       CHECK(std::fabs(now - static_cast<double>(batch.cost[i])) < kRounding);
       if (std::fabs(now - before) < kRounding) continue;
-      CHECK(batch.end[i] == (now < before && i % 5 != 4 ? 1 : 0));
+      CHECK(batch.falls[i] == (now < before && i % 5 != 4 ? 1 : 0));
       ++(now < before ? less : not_less);
     }
   }

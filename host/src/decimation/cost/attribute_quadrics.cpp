@@ -43,7 +43,7 @@ float quadric_at(const VertexRecord& v, const std::array<float, 3>& x) {
 
 /// An end of an edge of a batch.
 void lock(EdgeBatch::Words& end, std::size_t lane) {
-  float& flags = end[3][lane];
+  float& flags = end[VertexRecord::kSource][lane];
   flags = std::bit_cast<float>(std::bit_cast<std::uint32_t>(flags) | VertexRecord::kLocked);
 }
 
@@ -227,15 +227,15 @@ void AttributeQuadrics::add_to(EdgeBatch& batch, std::span<const std::uint32_t> 
       wedges_.for_each_pair(mesh_, h, [&](std::uint32_t wp, std::uint32_t wq) {
         add_difference(wp, wq, weight_[wq], d, a, b, c);
       });
-      for (std::size_t k = 0; k < 6; ++k) batch.p[5 + k][i] += a[k];
-      batch.p[11][i] += c;
-      for (std::size_t k = 0; k < 3; ++k) batch.p[12 + k][i] += b[k];
+      for (std::size_t k = 0; k < 6; ++k) batch.p[VertexRecord::kA + k][i] += a[k];
+      batch.p[VertexRecord::kC][i] += c;
+      for (std::size_t k = 0; k < 3; ++k) batch.p[VertexRecord::kB + k][i] += b[k];
     } else {
       float cost = deviation_[p_stays ? p : q];
       wedges_.for_each_pair(mesh_, h, [&](std::uint32_t wp, std::uint32_t wq) {
         cost += p_stays ? deviation(wq, {-d[0], -d[1], -d[2]}, wp) : deviation(wp, d, wq);
       });
-      batch.p[11][i] += cost;
+      batch.p[VertexRecord::kC][i] += cost;
     }
   }
 }

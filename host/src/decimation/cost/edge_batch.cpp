@@ -29,14 +29,15 @@ struct Lane {
 [[gnu::always_inline]] inline Lane lane_of(const EdgeBatch& batch, std::size_t i) {
   const auto& p = batch.p;
   const auto& q = batch.q;
-  return {{p[5][i], p[6][i], p[7][i], p[8][i], p[9][i], p[10][i]},
-          {q[5][i], q[6][i], q[7][i], q[8][i], q[9][i], q[10][i]},
-          {p[12][i], p[13][i], p[14][i]},
-          {q[12][i], q[13][i], q[14][i]},
-          {q[0][i] - p[0][i], q[1][i] - p[1][i], q[2][i] - p[2][i]},
-          p[11][i],
-          q[11][i],
-          is_locked(p[3][i]) + 2 * is_locked(q[3][i])};
+  using enum VertexRecord::Word;
+  return {{p[kA][i], p[kA + 1][i], p[kA + 2][i], p[kA + 3][i], p[kA + 4][i], p[kA + 5][i]},
+          {q[kA][i], q[kA + 1][i], q[kA + 2][i], q[kA + 3][i], q[kA + 4][i], q[kA + 5][i]},
+          {p[kB][i], p[kB + 1][i], p[kB + 2][i]},
+          {q[kB][i], q[kB + 1][i], q[kB + 2][i]},
+          {q[kX][i] - p[kX][i], q[kY][i] - p[kY][i], q[kZ][i] - p[kZ][i]},
+          p[kC][i],
+          q[kC][i],
+          is_locked(p[kSource][i]) * EdgeBatch::kAtP + is_locked(q[kSource][i]) * EdgeBatch::kAtQ};
 }
 
 [[gnu::always_inline]] inline float both(const Lane& lane, float x, float y, float z) {
@@ -146,7 +147,7 @@ VKMESH_CLONES void place_optimally(EdgeBatch& batch, std::size_t count) {
       sx = near ? sx : 0.0f;
       sy = near ? sy : 0.0f;
       sz = near ? sz : 0.0f;
-      const bool free = lane.end == 0, at_p = lane.end == 1;
+      const bool free = lane.end == EdgeBatch::kFree, at_p = lane.end == EdgeBatch::kAtP;
       const float x = free ? mx + sx : at_p ? 0.0f : dx;
       const float y = free ? my + sy : at_p ? 0.0f : dy;
       const float z = free ? mz + sz : at_p ? 0.0f : dz;
@@ -162,7 +163,7 @@ VKMESH_CLONES void place_in_middle(EdgeBatch& batch, std::size_t count) {
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
       const Lane lane = lane_of(batch, i);
-      const float share = lane.end == 0 ? 0.5f : lane.end == 1 ? 0.0f : 1.0f;
+      const float share = lane.end == EdgeBatch::kFree ? 0.5f : lane.end == EdgeBatch::kAtP ? 0.0f : 1.0f;
       const float x = share * lane.d[0], y = share * lane.d[1], z = share * lane.d[2];
       batch.x[0][i] = x;
       batch.x[1][i] = y;
@@ -184,11 +185,13 @@ template <class Extra>
       const float dx = lane.d[0], dy = lane.d[1], dz = lane.d[2];
       const float at_p = extra(both(lane, 0.0f, 0.0f, 0.0f), 0, i);
       const float at_q = extra(both(lane, dx, dy, dz), 1, i);
-      const bool q = lane.end == 0 ? at_q <= at_p : lane.end != 1;
+      const bool q = lane.end == EdgeBatch::kFree ? at_q <= at_p : lane.end != EdgeBatch::kAtP;
       batch.x[0][i] = q ? dx : 0.0f;
       batch.x[1][i] = q ? dy : 0.0f;
       batch.x[2][i] = q ? dz : 0.0f;
-      batch.end[i] = lane.end == 3 ? 3 : q ? 2 : 1;
+      batch.end[i] = lane.end == EdgeBatch::kLocked ? EdgeBatch::kLocked
+                     : q                            ? EdgeBatch::kAtQ
+                                                    : EdgeBatch::kAtP;
       batch.cost[i] = q ? at_q : at_p;
     }
 }
@@ -209,6 +212,7 @@ VKMESH_CLONES void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::si
 
 VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const VertexRecord& p, const VertexRecord& q,
                                     float cost, std::size_t count) {
+  using enum VertexRecord::Word;
   const auto pa = p.a;
   const auto pb = p.b;
   const float pc = p.c;
@@ -217,16 +221,17 @@ VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const VertexRecord& p, con
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
       const auto& r = batch.q;
-      const std::array<float, 6> ra = {r[5][i], r[6][i], r[7][i], r[8][i], r[9][i], r[10][i]};
-      const std::array<float, 3> rb = {r[12][i], r[13][i], r[14][i]};
-      const float rc = r[11][i], x = r[0][i], y = r[1][i], z = r[2][i];
+      const std::array<float, 6> ra = {r[kA][i],     r[kA + 1][i], r[kA + 2][i],
+                                       r[kA + 3][i], r[kA + 4][i], r[kA + 5][i]};
+      const std::array<float, 3> rb = {r[kB][i], r[kB + 1][i], r[kB + 2][i]};
+      const float rc = r[kC][i], x = r[kX][i], y = r[kY][i], z = r[kZ][i];
       const float at_q = quadric_value(ra, rb, rc, qx - x, qy - y, qz - z) + cost;
       const float at_p = quadric_value(ra, rb, rc, px - x, py - y, pz - z) + pc,
                   at_r = rc + quadric_value(pa, pb, pc, x - px, y - py, z - pz);
-      const std::int32_t locked = is_locked(r[3][i]);  // it stays at r then
+      const std::int32_t locked = is_locked(r[kSource][i]);  // it stays at r then
       const float now = at_p < at_r ? at_p : at_r;
       batch.cost[i] = at_q;
-      batch.end[i] = at_q < now ? 1 - locked : 0;
+      batch.falls[i] = at_q < now ? 1 - locked : 0;
     }
 }
 

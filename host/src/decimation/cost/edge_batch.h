@@ -20,10 +20,12 @@ struct EdgeBatch {
   using Words = std::array<Lanes, 16>;
 
   alignas(64) Words p, q;
-  /// Where the point must stay: 1 at p, 2 at q, 0 anywhere, 3: both ends are locked.
+  /// Where the point of an edge must go. kLocked: both ends must stay, so that the edge can't collapse.
+  enum End : std::int32_t { kFree, kAtP, kAtQ, kLocked = kAtP | kAtQ };
   alignas(64) std::array<std::int32_t, kSize> end;
-  alignas(64) std::array<Lanes, 3> x;  // result: where the point goes, relative to p
-  alignas(64) Lanes cost;              // result: the sum of both quadrics there
+  alignas(64) std::array<Lanes, 3> x;                 // result: where the point goes, relative to p
+  alignas(64) Lanes cost;                             // result: the sum of both quadrics there
+  alignas(64) std::array<std::int32_t, kSize> falls;  // result of find_moved_costs
 
   /// The numbers of the vertices p and q.
   using Ends = std::array<std::uint32_t, 2>;
@@ -59,8 +61,8 @@ void place_at_end(EdgeBatch& batch, std::size_t count);
 void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::size_t count);
 
 /// p is about to move to q at this cost, and with it the other ends of its edges are those in batch.q. Sets
-/// `cost` to what such an edge will cost with its point at q, and `end` to 1 where that is less than it costs
-/// now, at either end; else to 0. With the point at its other end it costs no less than it does.
+/// `cost` to what such an edge will cost with its point at q, and `falls` to 1 where that is less than it
+/// costs now, at either end; else to 0. With the point at its other end it costs no less than it does.
 void find_moved_costs(EdgeBatch& batch, const VertexRecord& p, const VertexRecord& q, float cost,
                       std::size_t count);
 

@@ -120,7 +120,7 @@ void RangeCoarsening::attempt(std::size_t i) {
   const DueEdge edge{
       h,
       batch.cost_of(i),
-      2,
+      EdgeBatch::kAtQ,
       {vq.position[0] - vp.position[0], vq.position[1] - vp.position[1], vq.position[2] - vp.position[2]}};
   const float cos_deviation = std::max(state_.limits.cos_deviation, kCosSmooth);
   if (merger_.judge(edge, p, q, rings, cos_deviation) != Legality::kLegal) return;

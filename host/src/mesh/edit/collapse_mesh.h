@@ -38,6 +38,9 @@ struct alignas(64) VertexRecord {
   static constexpr std::uint32_t kAbsorbed = kHasParked;
   static constexpr std::uint32_t kSourceMask = kLocked - 1;
 
+  /// Where in the record's sixteen words each member begins, for loops that take records apart into lanes.
+  enum Word : std::size_t { kX, kY, kZ, kSource, kWeight, kA, kC = kA + 6, kB, kLeading = kB + 3 };
+
   [[nodiscard]] bool has(std::uint32_t flag) const { return (source & flag) != 0; }
   [[nodiscard]] bool alive() const { return (leading & kGone) == 0; }
 
@@ -75,6 +78,11 @@ struct alignas(64) VertexRecord {
   }
 };
 static_assert(sizeof(VertexRecord) == 64);
+static_assert(offsetof(VertexRecord, source) == 4 * VertexRecord::kSource &&
+              offsetof(VertexRecord, a) == 4 * VertexRecord::kA &&
+              offsetof(VertexRecord, c) == 4 * VertexRecord::kC &&
+              offsetof(VertexRecord, b) == 4 * VertexRecord::kB &&
+              offsetof(VertexRecord, leading) == 4 * VertexRecord::kLeading);
 
 /// Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
 [[gnu::always_inline]] inline float quadric_value(const std::array<float, 6>& a,
