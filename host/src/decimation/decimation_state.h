@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <vkmesh/decimation/decimate.h>
+#include <vkmesh/decimation/reason.h>
 
 #include "mesh/edit/collapse_mesh.h"
 
@@ -16,10 +17,6 @@ namespace vkmesh::detail {
 
 class AttributeQuadrics;
 class Criteria;
-
-enum class Legality { kLegal, kLink, kFoldOver, kError, kLocked, kSeam, kCriterion };
-/// How many candidates, by Legality.
-using CountByReason = std::array<std::size_t, 7>;
 
 struct Limits {
   std::size_t faces = 0, vertices = 0;
@@ -40,9 +37,8 @@ struct Outcome {
   DecimateStop stop = DecimateStop::kTargetReached;
   double error2 = 0, attribute_error2 = 0;  // the largest of a removal, mean squares in local units
   std::size_t collapses = 0;
-  CountByReason rejected{};             // each time that one was
-  CountByReason blocked{};              // in the end, where no target was reached
-  std::size_t blocked_by_boundary = 0;  // of those that are locked
+  CountByReason rejected;  // each time that one was
+  CountByReason blocked;   // of what is left in the end, where no target was reached
   std::vector<Event> events;
   std::vector<DecimationChanges::Face> changed_faces;  // by removals, if events are kept
 
@@ -51,7 +47,7 @@ struct Outcome {
     error2 = std::max(error2, more.error2);
     attribute_error2 = std::max(attribute_error2, more.attribute_error2);
     collapses += more.collapses;
-    for (std::size_t i = 0; i < rejected.size(); ++i) rejected[i] += more.rejected[i];
+    rejected += more.rejected;
     events.insert(events.end(), more.events.begin(), more.events.end());
     return *this;
   }

@@ -177,12 +177,12 @@ class EdgeCollapses {
         if (!mesh_.alive(h) || !mesh_.parked(h) || (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
           continue;
         // Rounding differs from one half of the edge to the other, and it was one of them that was refused.
-        Legality why = judge_alone(h);
-        if (why == Legality::kLegal) why = judge_alone(mesh_.twin(h));
-        ++share_->state.outcome.blocked[static_cast<std::size_t>(why)];
-        if (why == Legality::kLocked && share_->state.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
+        Reason why = judge_alone(h);
+        if (why == Reason::kNone) why = judge_alone(mesh_.twin(h));
+        if (why == Reason::kLocked && share_->state.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
             mesh_.on_boundary(mesh_.target(h)))
-          ++share_->state.outcome.blocked_by_boundary;
+          why = Reason::kBoundary;
+        ++share_->state.outcome.blocked[why];
       }
   }
 
@@ -361,12 +361,12 @@ class EdgeCollapses {
       return;
     }
     EdgeRings rings;
-    const Legality legality = judge(b, i, p, q, rings);
-    if (legality == Legality::kLegal) {
+    const Reason legality = judge(b, i, p, q, rings);
+    if (legality == Reason::kNone) {
       if (!Placement::kByCriteria && watches_distance() && is_put_off(due, p, q)) return;
       collapse(due, p, q, rings);
     } else {
-      ++share_->state.outcome.rejected[static_cast<std::size_t>(legality)];
+      ++share_->state.outcome.rejected[legality];
       mesh_.clear_queued(h);
       mesh_.set_parked(h);
       vertices_[p].source |= VertexRecord::kHasParked;
@@ -391,7 +391,7 @@ class EdgeCollapses {
     return true;
   }
 
-  [[nodiscard]] Legality judge_alone(std::uint32_t h) {
+  [[nodiscard]] Reason judge_alone(std::uint32_t h) {
     evaluate(std::span(&h, 1));
     Pending& alone = *pending_[0];
     alone.due[0] = due_of(0, h);
@@ -401,21 +401,21 @@ class EdgeCollapses {
   }
 
   /// Sets `rings` when it comes to that.
-  [[nodiscard]] Legality judge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
-                               EdgeRings& rings) {
+  [[nodiscard]] Reason judge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
+                             EdgeRings& rings) {
     const Due& due = b.due[i];
-    if (due.end == EdgeBatch::kLocked) return Legality::kLocked;
+    if (due.end == EdgeBatch::kLocked) return Reason::kLocked;
     if constexpr (kAttributes)
-      if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Legality::kSeam;
-    if (merger_.exceeds_error(share_->state, due, p, q)) return Legality::kError;
+      if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Reason::kSeam;
+    if (merger_.exceeds_error(share_->state, due, p, q)) return Reason::kErrorBound;
     rings = rings_of(b, i);
-    if (const Legality shape = merger_.judge(due, p, q, rings, share_->state.limits.cos_deviation);
-        shape != Legality::kLegal)
+    if (const Reason shape = merger_.judge(due, p, q, rings, share_->state.limits.cos_deviation);
+        shape != Reason::kNone)
       return shape;
     return share_->state.criteria == nullptr || !share_->state.criteria->bounds() ||
                    meets_criteria(due, p, q, rings)
-               ? Legality::kLegal
-               : Legality::kCriterion;
+               ? Reason::kNone
+               : Reason::kCriterion;
   }
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q,

@@ -55,12 +55,12 @@ class EdgeMerger {
 
   /// Whether the surface stays what it is, and no face turns by more than the angle of this cosine: of the
   /// edge around which it was looked.
-  [[nodiscard]] Legality judge(const DueEdge& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings,
-                               float cos_deviation) {
-    if (!link_condition(rings)) return Legality::kLink;
+  [[nodiscard]] Reason judge(const DueEdge& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings,
+                             float cos_deviation) {
+    if (!link_condition(rings)) return Reason::kLinkCondition;
     return folds_over(neighbourhood_, vertices_[p].position, vertices_[q].position, due.x, cos_deviation)
-               ? Legality::kFoldOver
-               : Legality::kLegal;
+               ? Reason::kFoldOver
+               : Reason::kNone;
   }
   /// See squared_distance_of_collapse; of the same edge.
   [[nodiscard]] float squared_distance(const DueEdge& due, std::uint32_t p, std::uint32_t q,

@@ -36,18 +36,16 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   result.relative_error = frame.diagonal > 0 ? result.error / frame.diagonal : 0;
   if (frame.diagonal > 0)
     result.attribute_error = std::sqrt(outcome.attribute_error2) / (frame.diagonal * frame.scale);
-  const auto rejected = [&](Legality why) { return outcome.rejected[static_cast<std::size_t>(why)]; };
-  result.rejected_link = rejected(Legality::kLink);
-  result.rejected_fold_over = rejected(Legality::kFoldOver);
-  result.rejected_error = rejected(Legality::kError);
-  result.rejected_locked = rejected(Legality::kLocked);
-  result.rejected_seam = rejected(Legality::kSeam);
-  result.rejected_criterion = rejected(Legality::kCriterion);
-  const auto held = [&](Legality why) { return outcome.blocked[static_cast<std::size_t>(why)]; };
-  result.held = {held(Legality::kLink),       held(Legality::kFoldOver),
-                 held(Legality::kError),      held(Legality::kLocked) - outcome.blocked_by_boundary,
-                 outcome.blocked_by_boundary, held(Legality::kSeam),
-                 held(Legality::kCriterion)};
+  const CountByReason &rejected = outcome.rejected, &blocked = outcome.blocked;
+  result.rejected_link = rejected[Reason::kLinkCondition];
+  result.rejected_fold_over = rejected[Reason::kFoldOver];
+  result.rejected_error = rejected[Reason::kErrorBound];
+  result.rejected_locked = rejected[Reason::kLocked];
+  result.rejected_seam = rejected[Reason::kSeam];
+  result.rejected_criterion = rejected[Reason::kCriterion];
+  result.held = {blocked[Reason::kLinkCondition], blocked[Reason::kFoldOver], blocked[Reason::kErrorBound],
+                 blocked[Reason::kLocked],        blocked[Reason::kBoundary], blocked[Reason::kSeam],
+                 blocked[Reason::kCriterion]};
   result.history.reserve(outcome.events.size());
   for (const Event& e : outcome.events)
     result.history.push_back(

@@ -42,7 +42,7 @@ Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
     }
     if (!removals.step()) {
       removals.count_blocked();
-      const bool by_error = state.outcome.blocked[static_cast<std::size_t>(Legality::kError)] > 0;
+      const bool by_error = state.outcome.blocked[Reason::kErrorBound] > 0;
       state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
       break;
     }

@@ -65,7 +65,7 @@ class VertexRemovals {
         if (errors[i] < kNone)
           queue_.fill(ids[i], errors[i]);
         else
-          park(ids[i], Legality::kFoldOver);
+          park(ids[i], Reason::kFoldOver);
       }
       count = 0;
     };
@@ -73,7 +73,7 @@ class VertexRemovals {
       const VertexRecord& vertex = vertices_[v];
       if (!vertex.alive()) continue;
       if (vertex.has(VertexRecord::kLocked)) {
-        ++state_.outcome.rejected[static_cast<std::size_t>(Legality::kLocked)];
+        ++state_.outcome.rejected[Reason::kLocked];
         continue;
       }
       ids[count++] = v;
@@ -87,13 +87,13 @@ class VertexRemovals {
   bool step() {
     std::array<std::uint32_t, kStars> taken;
     const std::size_t count = queue_.take(taken);
-    stars_.walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Legality::kFoldOver); });
+    stars_.walk(std::span(taken).first(count), [&](std::uint32_t v) { park(v, Reason::kFoldOver); });
     due_.clear();
     std::array<Removal*, kStars> in_order{};
     evaluate([&](const VertexStar& star, std::size_t lane) {
       const float cost = rank(star, lane);
       if (!(cost < kNone))
-        park(star.vertex, Legality::kFoldOver);
+        park(star.vertex, Reason::kFoldOver);
       else if (queue_.is_due(star.vertex, cost))
         in_order[stars_.index_of(star)] = &due_.emplace_back(removal_of(star, lane));
       else
@@ -115,21 +115,20 @@ class VertexRemovals {
 
   /// Counts what blocks each vertex that is left.
   void count_blocked() {
-    const auto count = [&](Legality why) { ++state_.outcome.blocked[static_cast<std::size_t>(why)]; };
+    const auto count = [&](Reason why) { ++state_.outcome.blocked[why]; };
     for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
       if (!vertices_[v].alive()) continue;
       if (vertices_[v].has(VertexRecord::kLocked)) {
-        count(Legality::kLocked);
-        if (state_.boundary_kept && mesh_.on_boundary(v)) ++state_.outcome.blocked_by_boundary;
+        count(state_.boundary_kept && mesh_.on_boundary(v) ? Reason::kBoundary : Reason::kLocked);
       } else if (vertices_[v].has(VertexRecord::kHasParked)) {
-        stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Legality::kFoldOver); });
+        stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Reason::kFoldOver); });
         evaluate([&](const VertexStar& star, std::size_t lane) {
-          if (!(batch_.error[lane] < kNone)) return count(Legality::kFoldOver);
+          if (!(batch_.error[lane] < kNone)) return count(Reason::kFoldOver);
           Removal removal = removal_of(star, lane);
-          if (!keeps_seams(star)) return count(Legality::kSeam);
-          if (is_pillow(star)) return count(Legality::kLink);
+          if (!keeps_seams(star)) return count(Reason::kSeam);
+          if (is_pillow(star)) return count(Reason::kLinkCondition);
           avoid_existing(removal);
-          count(removal.error < kNone ? judge(removal) : Legality::kLink);
+          count(removal.error < kNone ? judge(removal) : Reason::kLinkCondition);
         });
       }
     }
@@ -286,9 +285,9 @@ class VertexRemovals {
   void attempt(Removal& removal) {
     const VertexStar& star = *removal.star;
     const std::uint32_t v = star.vertex;
-    if (!keeps_seams(star)) return park(v, Legality::kSeam);
-    if (too_far(v, removal.error)) return park(v, Legality::kError);
-    if (is_pillow(star)) return park(v, Legality::kLink);
+    if (!keeps_seams(star)) return park(v, Reason::kSeam);
+    if (too_far(v, removal.error)) return park(v, Reason::kErrorBound);
+    if (is_pillow(star)) return park(v, Reason::kLinkCondition);
     for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
       const std::uint32_t p = star.target[a], q = star.target[b];
       if (vertices_[p].has(VertexRecord::kTouched) && vertices_[q].has(VertexRecord::kTouched))
@@ -296,11 +295,11 @@ class VertexRemovals {
     });
     if (removal.has_existing) {
       avoid_existing(removal);
-      if (!(removal.error < kNone)) return park(v, Legality::kLink);
+      if (!(removal.error < kNone)) return park(v, Reason::kLinkCondition);
       const float cost = cost_of(removal);
       if (!queue_.is_due(v, cost)) return queue_.insert(v, cost);
     }
-    if (const Legality legality = judge(removal); legality != Legality::kLegal) return park(v, legality);
+    if (const Reason legality = judge(removal); legality != Reason::kNone) return park(v, legality);
     remove(removal);
   }
 
@@ -316,12 +315,12 @@ class VertexRemovals {
   }
 
   /// Of a removal that makes no edge which is there.
-  [[nodiscard]] Legality judge(const Removal& removal) {
+  [[nodiscard]] Reason judge(const Removal& removal) {
     const VertexStar& star = *removal.star;
-    if (too_far(star.vertex, removal.error)) return Legality::kError;
-    if (folds_over(star, removal.triangles)) return Legality::kFoldOver;
+    if (too_far(star.vertex, removal.error)) return Reason::kErrorBound;
+    if (folds_over(star, removal.triangles)) return Reason::kFoldOver;
     const bool bound = state_.criteria != nullptr && state_.criteria->bounds();
-    return bound && !meets_criteria(star, removal.triangles) ? Legality::kCriterion : Legality::kLegal;
+    return bound && !meets_criteria(star, removal.triangles) ? Reason::kCriterion : Reason::kNone;
   }
 
   /// What the queue holds a vertex under; kNone when it can not go.
@@ -519,8 +518,8 @@ class VertexRemovals {
     return after < before;
   }
 
-  void park(std::uint32_t v, Legality why) {
-    ++state_.outcome.rejected[static_cast<std::size_t>(why)];
+  void park(std::uint32_t v, Reason why) {
+    ++state_.outcome.rejected[why];
     vertices_[v].source |= VertexRecord::kHasParked;
   }
 

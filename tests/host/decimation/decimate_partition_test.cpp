@@ -147,7 +147,7 @@ class Partitions {
   void check_parked() {
     worker_.work_on(*shares_.back());
     worker_.count_blocked();
-    CHECK(state_.outcome.blocked[static_cast<std::size_t>(detail::Legality::kLegal)] == 0);
+    CHECK(state_.outcome.blocked[Reason::kNone] == 0);
   }
 
   [[nodiscard]] std::size_t collapses() const { return state_.outcome.collapses; }

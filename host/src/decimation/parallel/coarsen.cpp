@@ -123,7 +123,7 @@ void RangeCoarsening::attempt(std::size_t i) {
       EdgeBatch::kAtQ,
       {vq.position[0] - vp.position[0], vq.position[1] - vp.position[1], vq.position[2] - vp.position[2]}};
   const float cos_deviation = std::max(state_.limits.cos_deviation, kCosSmooth);
-  if (merger_.judge(edge, p, q, rings, cos_deviation) != Legality::kLegal) return;
+  if (merger_.judge(edge, p, q, rings, cos_deviation) != Reason::kNone) return;
   merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q, rings), 0);
   touched_.push_back(q);
   vertices_[p].source |= VertexRecord::kAbsorbed;
