@@ -1,4 +1,4 @@
-// The functions of shaders/arithmetic.glsl as one would write them who need not care for the same bytes on every device:
+// The functions of shaders/lib/arithmetic.glsl as one would write them who need not care for the same bytes on every device:
 // with built-ins, free to be fused and reordered, nothing small set to zero. For the benchmark, which tells what
 // exactness costs. The build defines `precise` away beside this file.
 #ifndef VKMESH_BUILT_INS_GLSL

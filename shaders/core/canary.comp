@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every function of the arithmetic on given values, for the check against the host (engine/src/canary.cpp).
+// Every function of the arithmetic on given values, for the check against the host (engine/src/core/canary.cpp).
 #include "lib/kernel.glsl"
 
 VKMESH_PUSH_CONSTANTS(CanaryParams);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kCases = 512;
 
-/// What each result of shaders/canary.comp is.
+/// What each result of shaders/core/canary.comp is.
 constexpr std::array<const char*, VKMESH_CANARY_RESULTS> kNames = {
     "zero_below",     "reciprocal",  "reciprocal_root", "root",          "first_quadrant_angle",
     "squared_length", "area_vector", "area_vector",     "area_vector",   "unit_vector",

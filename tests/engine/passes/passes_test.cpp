@@ -1,5 +1,5 @@
-// Every pass on the device against its CPU reference, bit for bit. (tests/host/passes_test.cpp checks the
-// reference.)
+// Every pass on the device against its CPU reference, bit for bit. (tests/host/passes/passes_test.cpp checks
+// the reference.)
 #include <algorithm>
 #include <bit>
 #include <cmath>

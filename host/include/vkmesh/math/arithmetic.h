@@ -1,5 +1,5 @@
 // The arithmetic that gives the same bytes on every device: 32-bit + - *, comparisons and integers, in one
-// order. Twin of shaders/arithmetic.glsl, function by function; docs/exactness.md says why.
+// order. Twin of shaders/lib/arithmetic.glsl, function by function; docs/exactness.md says why.
 #pragma once
 
 #include <algorithm>

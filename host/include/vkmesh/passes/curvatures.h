@@ -29,7 +29,7 @@ struct VertexCurvature {
 /// and of a half or a quarter of the others. What a vertex without area has (an isolated one, or one of
 /// degenerate triangles only) is 0. Cotangents are held within ±2^10 and curvatures within ±2^100, so that
 /// slivers make large values and never a NaN. Takes the neighbours of a triangle mesh. The reference of
-/// shaders/curvatures.comp, equal to it bit for bit. O(edges). Errors: kUsage for a wrong number of
+/// shaders/passes/curvatures.comp, equal to it bit for bit. O(edges). Errors: kUsage for a wrong number of
 /// positions; kUnsuitable as check_positions(); kOutOfMemory.
 [[nodiscard]] Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours,
                                                               std::span<const Vec3> positions);

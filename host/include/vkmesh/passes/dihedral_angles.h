@@ -22,7 +22,8 @@ struct DihedralAngles {
 /// The angle between neighbouring triangle normals (lecture, "Curvature, features"), by 2 atan2(|a − b|, |a +
 /// b|) of the unit normals a, b (W. Kahan, "How futile are mindless assessments of roundoff", 2006, §12),
 /// accurate for flat and sharp edges alike; the sign is that of (a × b) · edge. The reference of
-/// shaders/dihedral_angles_*.comp, equal to it bit for bit. O(half-edges). Errors: as vertex_normals().
+/// shaders/passes/dihedral_angles_*.comp, equal to it bit for bit. O(half-edges). Errors: as
+/// vertex_normals().
 [[nodiscard]] Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh,
                                                      std::span<const Vec3> positions);
 

@@ -45,10 +45,10 @@ struct LaplacianSmoothingOptions {
 
 /// v ← v + λ (weighted mean of its neighbours − v), `iterations` times, all vertices at once (lecture, "Mesh
 /// smoothing"). Neighbours are summed in NodeNeighbours order; isolated vertices stay. The reference of
-/// shaders/laplacian_smoothing.comp and cotangent_smoothing.comp, equal to them bit for bit. Coordinates
-/// below 2^-100 in magnitude become 0. Cotangent weights take the neighbours of a triangle mesh. O(iterations
-/// × edges). Memory: about 40 bytes a vertex beside the result. Errors: kUsage for λ outside [0, 1], μ
-/// outside [−1, 0], a wrong number of positions or of locked vertices; kOutOfMemory; kInterrupted.
+/// shaders/passes/laplacian_smoothing.comp and cotangent_smoothing.comp, equal to them bit for bit.
+/// Coordinates below 2^-100 in magnitude become 0. Cotangent weights take the neighbours of a triangle mesh.
+/// O(iterations × edges). Memory: about 40 bytes a vertex beside the result. Errors: kUsage for λ outside [0,
+/// 1], μ outside [−1, 0], a wrong number of positions or of locked vertices; kOutOfMemory; kInterrupted.
 [[nodiscard]] Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
                                                             std::span<const Vec3> positions,
                                                             const LaplacianSmoothingOptions& options = {},

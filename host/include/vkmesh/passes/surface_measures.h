@@ -21,8 +21,8 @@ struct SurfaceMeasures {
 
 /// Sums over faces in 32 bits, by a tree: blocks of 64 in ascending order, then blocks of 64 of these, and so
 /// on, in coordinates relative to the centre of the bounds and scaled by a power of two. The reference of
-/// shaders/bounds_blocks.comp, face_measures.comp and sum_blocks.comp, equal to them bit for bit. O(faces).
-/// Errors: kUnsuitable unless triangles; kUsage unless one position for each vertex; kOutOfMemory.
+/// shaders/passes/bounds_blocks.comp, face_measures.comp and sum_blocks.comp, equal to them bit for bit.
+/// O(faces). Errors: kUnsuitable unless triangles; kUsage unless one position for each vertex; kOutOfMemory.
 [[nodiscard]] Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
                                                        std::span<const Vec3> positions);
 

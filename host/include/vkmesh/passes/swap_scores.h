@@ -27,7 +27,7 @@ inline constexpr float kNoSwap = -4.0f;
 /// For each half-edge what its edge's swap gains, the same for twins: the criterion after less before.
 /// kNoSwap on the boundary, and where a new triangle would face away from the two that it replaces (in the
 /// plane: where the quadrilateral is not convex). Whether the new edge exists already is not looked at. The
-/// reference of shaders/swap_scores.comp, equal to it bit for bit. O(half-edges). Errors: as
+/// reference of shaders/passes/swap_scores.comp, equal to it bit for bit. O(half-edges). Errors: as
 /// vertex_normals().
 [[nodiscard]] Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh,
                                                      std::span<const Vec3> positions,

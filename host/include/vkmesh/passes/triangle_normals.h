@@ -11,8 +11,8 @@
 namespace vkmesh {
 
 /// (p1 − p0) × (p2 − p0), scaled to length 1, for each face; the zero vector for a triangle without area
-/// (docs/exactness.md says below which size). The reference of shaders/triangle_normals.comp, equal to it bit
-/// for bit. O(faces). Errors: as vertex_normals().
+/// (docs/exactness.md says below which size). The reference of shaders/passes/triangle_normals.comp, equal to
+/// it bit for bit. O(faces). Errors: as vertex_normals().
 [[nodiscard]] Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh,
                                                          std::span<const Vec3> positions);
 

@@ -26,8 +26,8 @@ struct VertexNormalsOptions {
 /// N_v = Σ w_T N_T / |Σ w_T N_T| over the triangles T around v, summed in ascending order of faces (lecture,
 /// "Normals"). Unit vectors; the zero vector where no direction is defined: isolated vertices, and fans of
 /// degenerate triangles (lengths below about 4e-19 units and areas below about 4e-31 square units count as
-/// zero, see docs/exactness.md). The reference of shaders/vertex_normals*.comp, equal to them bit for bit.
-/// O(half-edges). Errors: kUnsuitable unless triangles; kUsage unless one position for each vertex;
+/// zero, see docs/exactness.md). The reference of shaders/passes/vertex_normals*.comp, equal to them bit for
+/// bit. O(half-edges). Errors: kUnsuitable unless triangles; kUsage unless one position for each vertex;
 /// kOutOfMemory.
 [[nodiscard]] Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
                                                        std::span<const Vec3> positions,
