@@ -21,6 +21,7 @@
 #include <vkmesh/engine/passes/vertex_normals.h>
 #include <vkmesh/mesh/triangulate.h>
 #include <vkmesh/passes/vertex_normals.h>
+#include <vkmesh/picture/png.h>
 
 #include "support/device.h"
 #include "support/shapes.h"
