@@ -109,12 +109,12 @@ class EdgeMerger {
     }
     const bool moves = place != kept.position;
     if (moves) {
-      kept.shift(dk);
+      kept.quadric.shift(dk);
       kept.position = place;
       kept.source |= VertexRecord::kMoved;
     }
-    gone.shift(dg);
-    kept.add_quadric(gone);
+    gone.quadric.shift(dg);
+    kept.quadric.add(gone.quadric);
     kept.weight += gone.weight;
     if constexpr (kAttributes) {
       state.attributes->collapse(h, dg, dk);

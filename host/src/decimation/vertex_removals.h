@@ -654,12 +654,10 @@ class VertexRemovals {
 
   /// Adds a share of the quadric of `gone` to that of `receiver`.
   static void absorb(VertexRecord& receiver, const VertexRecord& gone, float share) {
-    VertexRecord moved = gone;
-    std::array<float, 3> d;
-    for (std::size_t k = 0; k < 3; ++k) d[k] = receiver.position[k] - gone.position[k];
-    moved.shift(d);
-    receiver.add_quadric(moved, share);
-    receiver.weight += share * moved.weight;
+    Quadric moved = gone.quadric;
+    moved.shift(minus(receiver.position, gone.position));
+    receiver.quadric.add(moved, share);
+    receiver.weight += share * gone.weight;
   }
 
   static constexpr std::size_t kSearched = 32;

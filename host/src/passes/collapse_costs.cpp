@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <vkmesh/base/exceptions_to_result.h>
@@ -7,6 +8,7 @@
 
 #include "base/huge_pages.h"
 #include "base/parallel.h"
+#include "math/quadric.h"
 #include "passes/pass_input.h"
 #include "passes/per_edge_values.h"
 #include "simd/target_clones.h"
@@ -21,17 +23,12 @@ Result<void> check(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
   return detail::require_collapse_cost_options(options);
 }
 
-// Products below this count as zero, so that none is subnormal.
-float seen(float x) {
-  return zero_below(x, VKMESH_TINY_COORDINATE);
-}
+using Device = detail::DeviceArithmetic;
+using detail::Vector3;
 
 // A plane through the origin, by its unit normal.
 VertexQuadric plane(Vec3 n, float weight) {
-  const Vec3 w = zero_below(weight * n, VKMESH_TINY_QUADRIC);
-  const auto entry = [](float x) { return zero_below(x, VKMESH_TINY_QUADRIC); };
-  return {entry(w.x * n.x), entry(w.x * n.y), entry(w.x * n.z),
-          entry(w.y * n.y), entry(w.y * n.z), entry(w.z * n.z)};
+  return detail::plane_quadric<Device>({n.x, n.y, n.z}, weight);
 }
 
 // The plane that stands on the edge from p to q, perpendicular to the face of normal n.
@@ -46,71 +43,32 @@ void add(VertexQuadric& sum, const VertexQuadric& more) {
   for (std::size_t k = 0; k < 6; ++k) sum[k] += more[k];
 }
 
-Vec3 times(const VertexQuadric& a, Vec3 x) {
-  return {(a[0] * x.x + a[1] * x.y) + a[2] * x.z, (a[1] * x.x + a[3] * x.y) + a[4] * x.z,
-          (a[2] * x.x + a[4] * x.y) + a[5] * x.z};
+template <std::size_t kCount, class F>
+std::array<float, kCount> each(std::array<float, kCount> v, F&& f) {
+  for (float& x : v) x = f(x);
+  return v;
 }
 
-// x · A x, from its vertex.
-float value(const VertexQuadric& a, Vec3 x) {
-  const Vec3 from = zero_below(x, VKMESH_TINY_DIRECTION);
-  const Vec3 ax = zero_below(times(a, from), VKMESH_TINY_COORDINATE);
-  const float sum = (seen(from.x * ax.x) + seen(from.y * ax.y)) + seen(from.z * ax.z);
+// x · A x, from its vertex, which all its planes go through.
+float value(const VertexQuadric& a, const Vector3& x) {
+  const Vector3 from = each(x, Device::direction), ax = each(detail::times(a, from), Device::product);
+  const float sum =
+      Device::product(from[0] * ax[0]) + Device::product(from[1] * ax[1]) + Device::product(from[2] * ax[2]);
   return sum > 0.0f ? sum : 0.0f;
 }
 
 // Both quadrics at x, relative to p; q lies at d.
-float both(const VertexQuadric& p, const VertexQuadric& q, Vec3 d, Vec3 x) {
-  return value(p, x) + value(q, x - d);
+float both(const VertexQuadric& p, const VertexQuadric& q, const Vector3& d, const Vector3& x) {
+  return value(p, x) + value(q, detail::minus(x, d));
 }
-
-// L D Lᵀ of A + εI, by which A s = −g is solved.
-struct Factors {
-  float r0, r1, r2, l1, l2, l3;
-
-  explicit Factors(const VertexQuadric& a) {
-    // Directions in which the quadric is flatter than this share of its steepest are left alone; pivots are
-    // at least that share but for rounding.
-    const float e = ((a[0] + a[3]) + a[5]) * VKMESH_FLAT_SHARE + VKMESH_FLAT_LEAST, least = 0.5f * e;
-    r0 = reciprocal(a[0] + e);
-    l1 = seen(a[1] * r0);
-    l2 = seen(a[2] * r0);
-    const float p1 = (a[3] + e) - seen(l1 * a[1]);
-    r1 = reciprocal(p1 > least ? p1 : least);
-    const float u = seen(a[4] - seen(l2 * a[1]));
-    l3 = seen(u * r1);
-    const float p2 = ((a[5] + e) - seen(l2 * a[2])) - seen(l3 * u);
-    r2 = reciprocal(p2 > least ? p2 : least);
-  }
-
-  [[nodiscard]] Vec3 solve(Vec3 g) const {
-    const float w0 = -g.x, w1 = seen(-g.y - seen(l1 * w0)), w2 = seen((-g.z - seen(l2 * w0)) - seen(l3 * w1));
-    const float z = seen(w2 * r2);
-    const float y = seen(seen(w1 * r1) - seen(l3 * z));
-    const float x = seen((seen(w0 * r0) - seen(l1 * y)) - seen(l2 * z));
-    return {x, y, z};
-  }
-};
 
 // Where both quadrics together are least, relative to p: from the middle, which is where the sum keeps its
 // digits.
-Vec3 least_place(const VertexQuadric& p, const VertexQuadric& q, Vec3 d) {
-  const Vec3 m = 0.5f * d;
-  VertexQuadric sum, difference;
-  for (std::size_t k = 0; k < 6; ++k) {
-    sum[k] = p[k] + q[k];
-    difference[k] = seen(p[k] - q[k]);
-  }
-  const Vec3 g = zero_below(times(difference, m), VKMESH_TINY_COORDINATE);
-  const Factors factors(sum);
-  const Vec3 first = factors.solve(g);
-  // Once more for the rest, which takes back what ε has shortened of steep directions.
-  const Vec3 rest =
-      zero_below(g + times(sum, zero_below(first, VKMESH_TINY_DIRECTION)), VKMESH_TINY_COORDINATE);
-  const Vec3 s = zero_below(first + factors.solve(rest), VKMESH_TINY_DIRECTION);
-  // Farther from the middle than twice the edge no planes of its faces can lead in earnest.
-  const bool near = squared_length(s) <= 4.0f * squared_length(d);
-  return near ? m + s : m;
+Vector3 least_place(const VertexQuadric& p, const VertexQuadric& q, const Vector3& d) {
+  const Vector3 middle = detail::times(0.5f, d);
+  const VertexQuadric difference = each(detail::minus(p, q), Device::product);
+  const Vector3 g = each(detail::times(difference, middle), Device::product);
+  return detail::plus(middle, detail::way_to_least<Device>(detail::plus(p, q), g, d));
 }
 
 float finite(float cost) {
@@ -129,27 +87,27 @@ struct Edges {
   [[nodiscard]] VertexQuadric quadric_q(std::size_t i) const {
     return {q[0][i], q[1][i], q[2][i], q[3][i], q[4][i], q[5][i]};
   }
-  [[nodiscard]] Vec3 along(std::size_t i) const { return {d[0][i], d[1][i], d[2][i]}; }
+  [[nodiscard]] Vector3 along(std::size_t i) const { return {d[0][i], d[1][i], d[2][i]}; }
 };
 
 VKMESH_FLAT_CLONES void costs_at_least(const Edges& edges, std::size_t count, float* __restrict out) {
   for (std::size_t i = 0; i < count; ++i) {
     const VertexQuadric p = edges.quadric_p(i), q = edges.quadric_q(i);
-    const Vec3 d = edges.along(i);
+    const Vector3 d = edges.along(i);
     out[i] = finite(both(p, q, d, least_place(p, q, d)));
   }
 }
 VKMESH_FLAT_CLONES void costs_in_middle(const Edges& edges, std::size_t count, float* __restrict out) {
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 d = edges.along(i);
-    out[i] = finite(both(edges.quadric_p(i), edges.quadric_q(i), d, 0.5f * d));
+    const Vector3 d = edges.along(i);
+    out[i] = finite(both(edges.quadric_p(i), edges.quadric_q(i), d, detail::times(0.5f, d)));
   }
 }
 VKMESH_FLAT_CLONES void costs_at_end(const Edges& edges, std::size_t count, float* __restrict out) {
   for (std::size_t i = 0; i < count; ++i) {
     const VertexQuadric p = edges.quadric_p(i), q = edges.quadric_q(i);
-    const Vec3 d = edges.along(i);
-    const float at_p = both(p, q, d, Vec3(0.0f)), at_q = both(p, q, d, d);
+    const Vector3 d = edges.along(i);
+    const float at_p = both(p, q, d, {}), at_q = both(p, q, d, d);
     out[i] = finite(at_q <= at_p ? at_q : at_p);
   }
 }

@@ -45,12 +45,12 @@ double cost_of(const VertexRecord& p, const VertexRecord& q) {
   for (std::size_t k = 0; k < 3; ++k)
     x[k] = static_cast<double>(q.position[k]) - static_cast<double>(p.position[k]);
   const std::array<std::array<std::size_t, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
-  double sum = p.c;
+  double sum = p.quadric.c;
   for (std::size_t i = 0; i < 3; ++i) {
-    sum += 2 * static_cast<double>(p.b[i]) * x[i];
-    for (std::size_t j = 0; j < 3; ++j) sum += static_cast<double>(p.a[at[i][j]]) * x[i] * x[j];
+    sum += 2 * static_cast<double>(p.quadric.b[i]) * x[i];
+    for (std::size_t j = 0; j < 3; ++j) sum += static_cast<double>(p.quadric.a[at[i][j]]) * x[i] * x[j];
   }
-  return std::max(sum, 0.0) + static_cast<double>(q.c);
+  return std::max(sum, 0.0) + static_cast<double>(q.quadric.c);
 }
 
 /// The same with vertices that are next to each other 16 numbers apart: in one batch.
@@ -84,7 +84,7 @@ TEST_CASE("coarsening knows the ring of each vertex, and where that goes at the 
     std::mt19937 random(seed);
     // What vertices have taken in is in their quadrics.
     for (std::uint32_t v = 0; v < mesh.apex(); ++v)
-      mesh.vertices[v].c = 1e-7f * static_cast<float>(random() % 1000);
+      mesh.vertices[v].quadric.c = 1e-7f * static_cast<float>(random() % 1000);
     const std::uint32_t n = mesh.apex();
     const VertexRange range = seed < 12 ? VertexRange{0, n} : VertexRange{n / 5, n / 5 + n / 2};
     std::vector<std::uint32_t> chosen;
@@ -182,7 +182,7 @@ TEST_CASE("coarsening takes what costs little from its range alone, and leaves t
       if (vertex.alive()) {
         CHECK(!vertex.has(VertexRecord::kTouched));
         CHECK(!vertex.has(VertexRecord::kHasParked));
-        CHECK(vertex.c <= half * 1.001f);
+        CHECK(vertex.quadric.c <= half * 1.001f);
         continue;
       }
       ++gone;
@@ -309,7 +309,7 @@ TEST_CASE("ranges are coarsened side by side as one after another", "[decimate]"
       }
     for (std::uint32_t v = 0; v < mesh.apex(); ++v) {
       words.push_back(mesh.vertices[v].leading);
-      words.push_back(std::bit_cast<std::uint32_t>(mesh.vertices[v].c));
+      words.push_back(std::bit_cast<std::uint32_t>(mesh.vertices[v].quadric.c));
     }
     return words;
   };

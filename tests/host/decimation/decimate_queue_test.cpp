@@ -58,9 +58,9 @@ VertexRecord vertex_at(const DVec3& place, const std::vector<Plane>& planes) {
   }
   VertexRecord v{};
   for (int k = 0; k < 3; ++k) v.position[static_cast<std::size_t>(k)] = static_cast<float>(place[k]);
-  for (std::size_t k = 0; k < 6; ++k) v.a[k] = static_cast<float>(a[k]);
-  for (std::size_t k = 0; k < 3; ++k) v.b[k] = static_cast<float>(b[k]);
-  v.c = static_cast<float>(c);
+  for (std::size_t k = 0; k < 6; ++k) v.quadric.a[k] = static_cast<float>(a[k]);
+  for (std::size_t k = 0; k < 3; ++k) v.quadric.b[k] = static_cast<float>(b[k]);
+  v.quadric.c = static_cast<float>(c);
   return v;
 }
 

@@ -126,8 +126,8 @@ void check_quadrics(const IndexedFaceSet& mesh, const detail::ConstraintWeights&
     const double rounding = 1e-5 * sum[0];
     bool same = std::fabs(static_cast<double>(vertex.weight) - sum[0]) <= rounding;
     for (std::size_t k = 0; k < 6; ++k)
-      same &= std::fabs(static_cast<double>(vertex.a[k]) - sum[k + 1]) <= rounding;
-    same &= vertex.c == 0 && vertex.b == std::array<float, 3>{};
+      same &= std::fabs(static_cast<double>(vertex.quadric.a[k]) - sum[k + 1]) <= rounding;
+    same &= vertex.quadric.c == 0 && vertex.quadric.b == std::array<float, 3>{};
     wrong += same ? 0 : 1;
   }
   INFO(mesh.face_count() << " faces, " << mesh.points.size() << " points, " << threads << " threads");

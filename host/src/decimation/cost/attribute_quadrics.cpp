@@ -12,10 +12,6 @@ namespace {
 /// Attributes have no gradient on a triangle of less area than this share of its squared sides.
 constexpr double kDegenerate = 1e-6;
 
-float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// What parts two functions of weights w and v counts so much when they become one.
 float harmonic(float w, float v) {
   return w + v > 0 ? w * v / (w + v) : 0.0f;
@@ -24,21 +20,6 @@ float harmonic(float w, float v) {
 /// The first's share.
 float share(float w, float v) {
   return w + v > 0 ? w / (w + v) : 0.0f;
-}
-
-void add_square(std::array<float, 6>& a, const std::array<float, 3>& g, float w) {
-  a[0] += w * g[0] * g[0];
-  a[1] += w * g[0] * g[1];
-  a[2] += w * g[0] * g[2];
-  a[3] += w * g[1] * g[1];
-  a[4] += w * g[1] * g[2];
-  a[5] += w * g[2] * g[2];
-}
-
-float quadric_at(const VertexRecord& v, const std::array<float, 3>& x) {
-  VertexRecord moved = v;
-  moved.shift(x);
-  return moved.c;
 }
 
 /// An end of an edge of a batch.
@@ -87,7 +68,8 @@ AttributeQuadrics::AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_coun
   if (apart) {
     apart_.resize(vertex_count);
   } else {
-    plain_.assign(&mesh.vertices[0], &mesh.vertices[0] + vertex_count);
+    plain_.resize(vertex_count);
+    for (std::size_t v = 0; v < vertex_count; ++v) plain_[v] = mesh.vertices[v].quadric;
     deviation_.assign(vertex_count, 0.0f);
   }
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) add_face(f);
@@ -155,47 +137,40 @@ void AttributeQuadrics::add_face(std::uint32_t f) {
   for (std::size_t k = 0; k < n; ++k) {
     const auto value = [&](std::size_t i) { return static_cast<double>(value_[wedge[i] * n + k]); };
     const double b = value(1) - value(0), c = value(2) - value(0);
-    std::array<float, 3> gradient;
+    Vector3 gradient;
     for (std::size_t i = 0; i < 3; ++i) gradient[i] = static_cast<float>(b * of_b[i] + c * of_c[i]);
     for (std::size_t i = 0; i < 3; ++i) {
       // All functions of a wedge have the same value at its vertex: only gradients differ.
       auto& mean = function_[wedge[i] * n + k].gradient;
       const float weight = weight_[wedge[i]], part = share(area, weight);
-      std::array<float, 3> difference;
+      Vector3 difference;
       for (std::size_t j = 0; j < 3; ++j) {
         difference[j] = gradient[j] - mean[j];
         mean[j] += part * difference[j];
       }
-      VertexRecord& vertex = apart_.empty() ? mesh_.vertices[origin[i]] : apart_[origin[i]];
-      add_square(vertex.a, difference, components_[k].cost * harmonic(area, weight));
+      Quadric& quadric = apart_.empty() ? mesh_.vertices[origin[i]].quadric : apart_[origin[i]];
+      quadric.add_square(difference, 0, components_[k].cost * harmonic(area, weight));
     }
   }
   for (const std::uint32_t w : wedge) weight_[w] += area;
 }
 
-std::array<float, 3> AttributeQuadrics::between(std::uint32_t p, std::uint32_t q) const {
-  const auto &a = mesh_.vertices[p].position, &b = mesh_.vertices[q].position;
-  return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+Vector3 AttributeQuadrics::between(std::uint32_t p, std::uint32_t q) const {
+  return minus(mesh_.vertices[q].position, mesh_.vertices[p].position);
 }
 
 void AttributeQuadrics::add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q,
-                                       const std::array<float, 3>& d, std::array<float, 6>& a,
-                                       std::array<float, 3>& b, float& c) const {
+                                       const Vector3& d, Quadric& to) const {
   const std::size_t n = components_.size();
   const float weight = harmonic(weight_[wedge_p], weight_q);
   for (std::size_t k = 0; k < n; ++k) {
     const Function &p = function_[wedge_p * n + k], &q = function_[wedge_q * n + k];
-    const std::array<float, 3> g = {p.gradient[0] - q.gradient[0], p.gradient[1] - q.gradient[1],
-                                    p.gradient[2] - q.gradient[2]};
-    const float value = p.value - (q.value - dot(q.gradient, d)), w = weight * components_[k].cost;
-    add_square(a, g, w);
-    for (std::size_t j = 0; j < 3; ++j) b[j] += w * g[j] * value;
-    c += w * value * value;
+    to.add_square(minus(p.gradient, q.gradient), p.value - (q.value - dot(q.gradient, d)),
+                  weight * components_[k].cost);
   }
 }
 
-float AttributeQuadrics::deviation(std::uint32_t wedge, const std::array<float, 3>& x,
-                                   std::uint32_t at) const {
+float AttributeQuadrics::deviation(std::uint32_t wedge, const Vector3& x, std::uint32_t at) const {
   const std::size_t n = components_.size();
   float sum = 0;
   for (std::size_t k = 0; k < n; ++k) {
@@ -215,21 +190,19 @@ float AttributeQuadrics::deviation(std::uint32_t v) const {
 void AttributeQuadrics::add_to(EdgeBatch& batch, std::span<const std::uint32_t> edges) const {
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const std::uint32_t h = edges[i], p = mesh_.origin(h), q = mesh_.target(h);
-    const std::array<float, 3> d = between(p, q);
+    const Vector3 d = between(p, q);
     const auto stays = [&](std::uint32_t v) { return mesh_.vertices[v].has(VertexRecord::kLocked); };
     const bool p_stays = stays(p), q_stays = stays(q);
     if (wedges_.on_seam(p) && !wedges_.on_seam(q) && q_stays) lock(batch.p, i);
     if (wedges_.on_seam(q) && !wedges_.on_seam(p) && p_stays) lock(batch.q, i);
     if (!p_stays && !q_stays) {
-      std::array<float, 6> a{};
-      std::array<float, 3> b{};
-      float c = 0;
+      Quadric more;
       wedges_.for_each_pair(mesh_, h, [&](std::uint32_t wp, std::uint32_t wq) {
-        add_difference(wp, wq, weight_[wq], d, a, b, c);
+        add_difference(wp, wq, weight_[wq], d, more);
       });
-      for (std::size_t k = 0; k < 6; ++k) batch.p[VertexRecord::kA + k][i] += a[k];
-      batch.p[VertexRecord::kC][i] += c;
-      for (std::size_t k = 0; k < 3; ++k) batch.p[VertexRecord::kB + k][i] += b[k];
+      for (std::size_t k = 0; k < 6; ++k) batch.p[VertexRecord::kA + k][i] += more.a[k];
+      batch.p[VertexRecord::kC][i] += more.c;
+      for (std::size_t k = 0; k < 3; ++k) batch.p[VertexRecord::kB + k][i] += more.b[k];
     } else {
       float cost = deviation_[p_stays ? p : q];
       wedges_.for_each_pair(mesh_, h, [&](std::uint32_t wp, std::uint32_t wq) {
@@ -244,7 +217,7 @@ void AttributeQuadrics::add_to_ends(EdgeBatch& batch, std::span<const std::uint3
                                     EndCosts& costs) const {
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const std::uint32_t h = edges[i], p = mesh_.origin(h), q = mesh_.target(h);
-    const std::array<float, 3> d = between(p, q);
+    const Vector3 d = between(p, q);
     float at_p = deviation_[p], at_q = deviation_[q];
     wedges_.for_each_pair(mesh_, h, [&](std::uint32_t wp, std::uint32_t wq) {
       at_p += deviation(wq, {-d[0], -d[1], -d[2]}, wp);
@@ -256,10 +229,9 @@ void AttributeQuadrics::add_to_ends(EdgeBatch& batch, std::span<const std::uint3
   }
 }
 
-float AttributeQuadrics::geometric_cost(std::uint32_t p, std::uint32_t q,
-                                        const std::array<float, 3>& x) const {
-  const std::array<float, 3> d = between(p, q);
-  return quadric_at(plain_[p], x) + quadric_at(plain_[q], {x[0] - d[0], x[1] - d[1], x[2] - d[2]});
+float AttributeQuadrics::geometric_cost(std::uint32_t p, std::uint32_t q, const Vector3& x) const {
+  const Vector3 d = between(p, q);
+  return plain_[p].value(x) + plain_[q].value(minus(x, d));
 }
 
 float AttributeQuadrics::weight(std::uint32_t v) const {
@@ -268,7 +240,7 @@ float AttributeQuadrics::weight(std::uint32_t v) const {
   return sum;
 }
 
-void AttributeQuadrics::move(std::uint32_t wedge, const std::array<float, 3>& by) {
+void AttributeQuadrics::move(std::uint32_t wedge, const Vector3& by) {
   const std::size_t n = components_.size();
   for (std::size_t k = 0; k < n; ++k) {
     Function& f = function_[wedge * n + k];
@@ -276,18 +248,17 @@ void AttributeQuadrics::move(std::uint32_t wedge, const std::array<float, 3>& by
   }
 }
 
-void AttributeQuadrics::collapse(std::uint32_t h, const std::array<float, 3>& move_gone,
-                                 const std::array<float, 3>& move_kept) {
+void AttributeQuadrics::collapse(std::uint32_t h, const Vector3& move_gone, const Vector3& move_kept) {
   const std::uint32_t gone = mesh_.origin(h), kept = mesh_.target(h);
   plain_[gone].shift(move_gone);
   plain_[kept].shift(move_kept);
-  plain_[kept].add_quadric(plain_[gone]);
+  plain_[kept].add(plain_[gone]);
   wedges_.for_each_at(mesh_, kept, [&](std::uint32_t w) { move(w, move_kept); });
   VertexRecord& vertex = mesh_.vertices[kept];
-  constexpr std::array<float, 3> kSamePlace = {0.0f, 0.0f, 0.0f};
+  constexpr Vector3 kSamePlace = {0.0f, 0.0f, 0.0f};
   wedges_.for_each_pair(mesh_, h, [&](std::uint32_t from, std::uint32_t to) {
     move(from, move_gone);
-    add_difference(to, from, weight_[from], kSamePlace, vertex.a, vertex.b, vertex.c);
+    add_difference(to, from, weight_[from], kSamePlace, vertex.quadric);
     join(to, from, weight_[from], kSamePlace);
   });
   if (keeps_changes_) keep_change(h, vertex.has(VertexRecord::kMoved) || move_kept != kSamePlace);
@@ -295,8 +266,7 @@ void AttributeQuadrics::collapse(std::uint32_t h, const std::array<float, 3>& mo
   deviation_[kept] = deviation(kept);
 }
 
-void AttributeQuadrics::join(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q,
-                             const std::array<float, 3>& d) {
+void AttributeQuadrics::join(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q, const Vector3& d) {
   const std::size_t n = components_.size();
   const float part = share(weight_q, weight_[wedge_p]);
   for (std::size_t k = 0; k < n; ++k) {
@@ -317,7 +287,7 @@ void AttributeQuadrics::set(RetriangulationAttributes& batch, std::size_t lane,
                             std::span<const std::uint32_t> edges, std::size_t neighbours,
                             const SeamSides& sides) const {
   const std::size_t n = components_.size();
-  const VertexRecord& left = apart_[mesh_.origin(edges[0])];
+  const Quadric& left = apart_[mesh_.origin(edges[0])];
   for (std::size_t k = 0; k < 6; ++k) batch.a[k][lane] = left.a[k];
   for (std::size_t k = 0; k < 3; ++k) batch.b[k][lane] = left.b[k];
   batch.c[lane] = left.c;
@@ -344,14 +314,14 @@ void AttributeQuadrics::set(RetriangulationAttributes& batch, std::size_t lane,
 void AttributeQuadrics::distribute_quadric(std::span<const std::uint32_t> edges, const SeamSides& sides,
                                            std::size_t neighbour, float part) {
   const std::uint32_t v = mesh_.origin(edges[0]), receiver = mesh_.target(edges[neighbour]);
-  const std::array<float, 3> d = between(receiver, v);
-  VertexRecord &left = apart_[receiver], moved = apart_[v];
+  const Vector3 d = between(receiver, v);
+  Quadric &left = apart_[receiver], moved = apart_[v];
   moved.shift({-d[0], -d[1], -d[2]});
-  left.add_quadric(moved, part);
+  left.add(moved, part);
   for (std::size_t side = 0; side < sides.count(); ++side) {
     const std::uint32_t from = wedges_.on_side(edges, sides, side),
                         to = wedges_.of_neighbour(edges, sides, side, neighbour);
-    add_difference(to, from, part * weight_[from], d, left.a, left.b, left.c);
+    add_difference(to, from, part * weight_[from], d, left);
     join(to, from, part * weight_[from], d);
   }
 }

@@ -13,6 +13,7 @@
 #include "decimation/cost/edge_batch.h"
 #include "decimation/cost/retriangulation.h"
 #include "decimation/legality/wedges.h"
+#include "math/quadric.h"
 #include "mesh/edit/collapse_mesh.h"
 
 namespace vkmesh::detail {
@@ -54,14 +55,13 @@ class AttributeQuadrics {
   void add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges, EndCosts& costs) const;
 
   /// Of the geometric quadrics alone, with the point at p + x.
-  [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const std::array<float, 3>& x) const;
+  [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const Vector3& x) const;
   /// Of the faces of all wedges of the vertex: the sum.
   [[nodiscard]] float weight(std::uint32_t v) const;
 
   /// The collapse of `gone` into `kept` along h = gone → kept, to be told after both vertices' quadrics were
   /// moved to the new place, by `move_gone` and `move_kept`, and added, and before the mesh collapses.
-  void collapse(std::uint32_t h, const std::array<float, 3>& move_gone,
-                const std::array<float, 3>& move_kept);
+  void collapse(std::uint32_t h, const Vector3& move_gone, const Vector3& move_kept);
 
   /// Room for the components.
   void prepare(RetriangulationAttributes& batch) const;
@@ -86,26 +86,25 @@ class AttributeQuadrics {
   void add_face(std::uint32_t f);
   /// Adds that which parts the functions of two wedges, of which the second has this weight, with the place
   /// expressed relative to p.
-  void add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q,
-                      const std::array<float, 3>& d, std::array<float, 6>& a, std::array<float, 3>& b,
-                      float& c) const;
+  void add_difference(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q, const Vector3& d,
+                      Quadric& to) const;
   /// The second, with this weight and at the place of the first plus d, becomes part of it.
-  void join(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q, const std::array<float, 3>& d);
+  void join(std::uint32_t wedge_p, std::uint32_t wedge_q, float weight_q, const Vector3& d);
   /// Sum of cost (function(x) - value)², times the weight of `wedge`; the value of `at`.
-  [[nodiscard]] float deviation(std::uint32_t wedge, const std::array<float, 3>& x, std::uint32_t at) const;
+  [[nodiscard]] float deviation(std::uint32_t wedge, const Vector3& x, std::uint32_t at) const;
   /// What all wedges of a vertex that stays where it is cost beside what is left of their quadrics.
   [[nodiscard]] float deviation(std::uint32_t v) const;
   [[nodiscard]] double value_of(std::size_t attribute, std::uint32_t corner, std::size_t component) const;
-  void move(std::uint32_t wedge, const std::array<float, 3>& by);
+  void move(std::uint32_t wedge, const Vector3& by);
   /// The collapse of h as a step, with values as they are from then on; the kept vertex has moved, or not.
   void keep_change(std::uint32_t h, bool moved);
   /// Of a wedge whose vertex was moved, or not.
   void append_values(std::uint32_t wedge, bool moved, std::vector<std::vector<float>>& values) const;
-  [[nodiscard]] std::array<float, 3> between(std::uint32_t p, std::uint32_t q) const;
+  [[nodiscard]] Vector3 between(std::uint32_t p, std::uint32_t q) const;
 
   /// A linear function: its gradient, and its value at the vertex.
   struct Function {
-    std::array<float, 3> gradient;
+    Vector3 gradient;
     float value;
   };
   /// Values are local: (value - middle) / range, and a square of them costs `cost`.
@@ -120,12 +119,12 @@ class AttributeQuadrics {
   std::span<const DecimateAttribute> attributes_;
   std::span<const std::uint32_t> corners_;
   std::vector<Component> components_;
-  std::vector<float> weight_;        // by wedge
-  std::vector<Function> function_;   // by wedge and component
-  std::vector<float> value_;         // the same: the input's
-  std::vector<VertexRecord> plain_;  // the vertices with their geometric quadrics alone
-  std::vector<VertexRecord> apart_;  // the vertices with the quadrics of attributes alone, for removals
-  std::vector<float> deviation_;     // by vertex
+  std::vector<float> weight_;       // by wedge
+  std::vector<Function> function_;  // by wedge and component
+  std::vector<float> value_;        // the same: the input's
+  std::vector<Quadric> plain_;      // by vertex: the geometric quadrics alone
+  std::vector<Quadric> apart_;      // by vertex, for removals: the quadrics of attributes alone
+  std::vector<float> deviation_;    // by vertex
   bool keeps_changes_ = false;
   std::uint32_t step_ = 0;
   DecimationChanges changes_;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "math/quadric.h"
 #include "simd/target_clones.h"
 #include "simd/transpose.h"
 
@@ -15,10 +16,13 @@ namespace {
 
 // A lane of a batch: both quadrics, and the edge.
 struct Lane {
-  std::array<float, 6> pa, qa;
-  std::array<float, 3> pb, qb, d;
-  float pc, qc;
+  Quadric p, q;
+  Vector3 d;
   std::int32_t end;
+
+  [[nodiscard, gnu::always_inline]] float both(const Vector3& x) const {
+    return p.value(x) + q.value(minus(x, d));
+  }
 };
 
 // 1 or 0; by the flags among a vertex' words.
@@ -26,23 +30,29 @@ struct Lane {
   return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(source) / VertexRecord::kLocked & 1u);
 }
 
-[[gnu::always_inline]] inline Lane lane_of(const EdgeBatch& batch, std::size_t i) {
-  const auto& p = batch.p;
-  const auto& q = batch.q;
-  using enum VertexRecord::Word;
-  return {{p[kA][i], p[kA + 1][i], p[kA + 2][i], p[kA + 3][i], p[kA + 4][i], p[kA + 5][i]},
-          {q[kA][i], q[kA + 1][i], q[kA + 2][i], q[kA + 3][i], q[kA + 4][i], q[kA + 5][i]},
-          {p[kB][i], p[kB + 1][i], p[kB + 2][i]},
-          {q[kB][i], q[kB + 1][i], q[kB + 2][i]},
-          {q[kX][i] - p[kX][i], q[kY][i] - p[kY][i], q[kZ][i] - p[kZ][i]},
-          p[kC][i],
-          q[kC][i],
-          is_locked(p[kSource][i]) * EdgeBatch::kAtP + is_locked(q[kSource][i]) * EdgeBatch::kAtQ};
+using enum VertexRecord::Word;
+
+[[gnu::always_inline]] inline Vector3 position_of(const EdgeBatch::Words& words, std::size_t i) {
+  return {words[kX][i], words[kY][i], words[kZ][i]};
+}
+[[gnu::always_inline]] inline Quadric quadric_of(const EdgeBatch::Words& words, std::size_t i) {
+  return {{words[kA][i], words[kA + 1][i], words[kA + 2][i], words[kA + 3][i], words[kA + 4][i],
+           words[kA + 5][i]},
+          words[kC][i],
+          {words[kB][i], words[kB + 1][i], words[kB + 2][i]}};
 }
 
-[[gnu::always_inline]] inline float both(const Lane& lane, float x, float y, float z) {
-  return quadric_value(lane.pa, lane.pb, lane.pc, x, y, z) +
-         quadric_value(lane.qa, lane.qb, lane.qc, x - lane.d[0], y - lane.d[1], z - lane.d[2]);
+[[gnu::always_inline]] inline Lane lane_of(const EdgeBatch& batch, std::size_t i) {
+  return {
+      quadric_of(batch.p, i), quadric_of(batch.q, i), minus(position_of(batch.q, i), position_of(batch.p, i)),
+      is_locked(batch.p[kSource][i]) * EdgeBatch::kAtP + is_locked(batch.q[kSource][i]) * EdgeBatch::kAtQ};
+}
+
+[[gnu::always_inline]] inline void set_result(EdgeBatch& batch, std::size_t i, const Vector3& x,
+                                              std::int32_t end, float cost) {
+  for (std::size_t k = 0; k < 3; ++k) batch.x[k][i] = x[k];
+  batch.end[i] = end;
+  batch.cost[i] = cost;
 }
 
 /// Some of `count` records of vertices, those from number i on; their numbers are every `stride`-th of `ids`.
@@ -106,56 +116,17 @@ void EdgeBatch::gather_q(const VertexRecord* vertices, std::span<const std::uint
 }
 
 VKMESH_CLONES void place_optimally(EdgeBatch& batch, std::size_t count) {
-  // Directions in which the quadric is flatter than this share of its steepest are left to the middle.
-  constexpr float kFlat = 1.0f / (1 << 20);
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
       const Lane lane = lane_of(batch, i);
-      const auto &pa = lane.pa, &qa = lane.qa;
-      const auto &pb = lane.pb, &qb = lane.qb;
-      const float dx = lane.d[0], dy = lane.d[1], dz = lane.d[2];
-      const float mx = 0.5f * dx, my = 0.5f * dy, mz = 0.5f * dz;
-      const float xx = pa[0] + qa[0], xy = pa[1] + qa[1], xz = pa[2] + qa[2];
-      const float yy = pa[3] + qa[3], yz = pa[4] + qa[4], zz = pa[5] + qa[5];
-      // Half the gradient in the middle, m from p and -m from q.
-      const float gx = (pb[0] + qb[0]) + ((pa[0] - qa[0]) * mx + (pa[1] - qa[1]) * my + (pa[2] - qa[2]) * mz);
-      const float gy = (pb[1] + qb[1]) + ((pa[1] - qa[1]) * mx + (pa[3] - qa[3]) * my + (pa[4] - qa[4]) * mz);
-      const float gz = (pb[2] + qb[2]) + ((pa[2] - qa[2]) * mx + (pa[4] - qa[4]) * my + (pa[5] - qa[5]) * mz);
-      // L D Lᵀ of A + εI, whose pivots are at least ε but for rounding.
-      const float e = (xx + yy + zz) * kFlat + 1e-36f, least = 0.5f * e;
-      const float d0 = xx + e, r0 = 1.0f / d0;
-      const float l1 = xy * r0, l2 = xz * r0;
-      const float p1 = (yy + e) - l1 * xy, d1 = p1 > least ? p1 : least, r1 = 1.0f / d1;
-      const float u = yz - l2 * xy, l3 = u * r1;
-      const float p2 = (zz + e) - l2 * xz - l3 * u, d2 = p2 > least ? p2 : least, r2 = 1.0f / d2;
-      const auto solve = [&](float hx, float hy, float hz, float& tx, float& ty, float& tz) {
-        const float w0 = -hx, w1 = -hy - l1 * w0, w2 = -hz - l2 * w0 - l3 * w1;
-        tz = w2 * r2;
-        ty = w1 * r1 - l3 * tz;
-        tx = w0 * r0 - l1 * ty - l2 * tz;
-      };
-      float sx, sy, sz, tx, ty, tz;
-      solve(gx, gy, gz, sx, sy, sz);
-      // Once more for the rest, which takes back what ε has shortened of steep directions.
-      solve(gx + (xx * sx + xy * sy + xz * sz), gy + (xy * sx + yy * sy + yz * sz),
-            gz + (xz * sx + yz * sy + zz * sz), tx, ty, tz);
-      sx += tx;
-      sy += ty;
-      sz += tz;
-      // Farther from the middle than twice the edge no planes of its faces can lead in earnest.
-      const bool near = sx * sx + sy * sy + sz * sz <= 4 * (dx * dx + dy * dy + dz * dz);
-      sx = near ? sx : 0.0f;
-      sy = near ? sy : 0.0f;
-      sz = near ? sz : 0.0f;
+      const Vector3 middle = times(0.5f, lane.d);
+      // Half the gradient in the middle, `middle` from p and -`middle` from q.
+      const Vector3 g = plus(plus(lane.p.b, lane.q.b), times(minus(lane.p.a, lane.q.a), middle));
+      const Vector3 s = way_to_least<HostArithmetic>(plus(lane.p.a, lane.q.a), g, lane.d);
       const bool free = lane.end == EdgeBatch::kFree, at_p = lane.end == EdgeBatch::kAtP;
-      const float x = free ? mx + sx : at_p ? 0.0f : dx;
-      const float y = free ? my + sy : at_p ? 0.0f : dy;
-      const float z = free ? mz + sz : at_p ? 0.0f : dz;
-      batch.x[0][i] = x;
-      batch.x[1][i] = y;
-      batch.x[2][i] = z;
-      batch.end[i] = lane.end;
-      batch.cost[i] = both(lane, x, y, z);
+      Vector3 x;
+      for (std::size_t k = 0; k < 3; ++k) x[k] = free ? middle[k] + s[k] : at_p ? 0.0f : lane.d[k];
+      set_result(batch, i, x, lane.end, lane.both(x));
     }
 }
 
@@ -163,13 +134,11 @@ VKMESH_CLONES void place_in_middle(EdgeBatch& batch, std::size_t count) {
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
       const Lane lane = lane_of(batch, i);
-      const float share = lane.end == EdgeBatch::kFree ? 0.5f : lane.end == EdgeBatch::kAtP ? 0.0f : 1.0f;
-      const float x = share * lane.d[0], y = share * lane.d[1], z = share * lane.d[2];
-      batch.x[0][i] = x;
-      batch.x[1][i] = y;
-      batch.x[2][i] = z;
-      batch.end[i] = lane.end;
-      batch.cost[i] = both(lane, x, y, z);
+      const Vector3 x = times(lane.end == EdgeBatch::kFree  ? 0.5f
+                              : lane.end == EdgeBatch::kAtP ? 0.0f
+                                                            : 1.0f,
+                              lane.d);
+      set_result(batch, i, x, lane.end, lane.both(x));
     }
 }
 
@@ -182,17 +151,14 @@ template <class Extra>
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
       const Lane lane = lane_of(batch, i);
-      const float dx = lane.d[0], dy = lane.d[1], dz = lane.d[2];
-      const float at_p = extra(both(lane, 0.0f, 0.0f, 0.0f), 0, i);
-      const float at_q = extra(both(lane, dx, dy, dz), 1, i);
+      const float at_p = extra(lane.both({}), 0, i), at_q = extra(lane.both(lane.d), 1, i);
       const bool q = lane.end == EdgeBatch::kFree ? at_q <= at_p : lane.end != EdgeBatch::kAtP;
-      batch.x[0][i] = q ? dx : 0.0f;
-      batch.x[1][i] = q ? dy : 0.0f;
-      batch.x[2][i] = q ? dz : 0.0f;
-      batch.end[i] = lane.end == EdgeBatch::kLocked ? EdgeBatch::kLocked
-                     : q                            ? EdgeBatch::kAtQ
-                                                    : EdgeBatch::kAtP;
-      batch.cost[i] = q ? at_q : at_p;
+      const Vector3 x = {q ? lane.d[0] : 0.0f, q ? lane.d[1] : 0.0f, q ? lane.d[2] : 0.0f};
+      set_result(batch, i, x,
+                 lane.end == EdgeBatch::kLocked ? EdgeBatch::kLocked
+                 : q                            ? EdgeBatch::kAtQ
+                                                : EdgeBatch::kAtP,
+                 q ? at_q : at_p);
     }
 }
 
@@ -212,23 +178,16 @@ VKMESH_CLONES void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::si
 
 VKMESH_CLONES void find_moved_costs(EdgeBatch& batch, const VertexRecord& p, const VertexRecord& q,
                                     float cost, std::size_t count) {
-  using enum VertexRecord::Word;
-  const auto pa = p.a;
-  const auto pb = p.b;
-  const float pc = p.c;
-  const auto [px, py, pz] = p.position;
-  const auto [qx, qy, qz] = q.position;
+  const Quadric of_p = p.quadric;
+  const Vector3 p_lies = p.position, q_lies = q.position;
   for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
     for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
-      const auto& r = batch.q;
-      const std::array<float, 6> ra = {r[kA][i],     r[kA + 1][i], r[kA + 2][i],
-                                       r[kA + 3][i], r[kA + 4][i], r[kA + 5][i]};
-      const std::array<float, 3> rb = {r[kB][i], r[kB + 1][i], r[kB + 2][i]};
-      const float rc = r[kC][i], x = r[kX][i], y = r[kY][i], z = r[kZ][i];
-      const float at_q = quadric_value(ra, rb, rc, qx - x, qy - y, qz - z) + cost;
-      const float at_p = quadric_value(ra, rb, rc, px - x, py - y, pz - z) + pc,
-                  at_r = rc + quadric_value(pa, pb, pc, x - px, y - py, z - pz);
-      const std::int32_t locked = is_locked(r[kSource][i]);  // it stays at r then
+      const Quadric of_r = quadric_of(batch.q, i);
+      const Vector3 r_lies = position_of(batch.q, i);
+      const float at_q = of_r.value(minus(q_lies, r_lies)) + cost;
+      const float at_p = of_r.value(minus(p_lies, r_lies)) + of_p.c,
+                  at_r = of_r.c + of_p.value(minus(r_lies, p_lies));
+      const std::int32_t locked = is_locked(batch.q[kSource][i]);  // it stays at r then
       const float now = at_p < at_r ? at_p : at_r;
       batch.cost[i] = at_q;
       batch.falls[i] = at_q < now ? 1 - locked : 0;

@@ -5,24 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "math/vector3.h"
 #include "simd/target_clones.h"
 
 namespace vkmesh::detail {
 namespace {
 
-using Vector = CollapseNeighbourhood::Vector;
+using Vector = Vector3;
 constexpr std::int32_t kBlock = CollapseNeighbourhood::kBlock;
-
-float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // Squared, of a point from a triangle (C. Ericson, "Real-time collision detection", 2005); NaN where the
 // triangle has a corner at no place.
 float squared_distance_to(const Vector& x, const Vector& a, const Vector& b, const Vector& c) {
-  const auto minus = [](const Vector& u, const Vector& v) {
-    return Vector{u[0] - v[0], u[1] - v[1], u[2] - v[2]};
-  };
   const Vector ab = minus(b, a), ac = minus(c, a), ax = minus(x, a);
   const auto from = [&](float s, float t) {
     const Vector rest = {ax[0] - s * ab[0] - t * ac[0], ax[1] - s * ab[1] - t * ac[1],

@@ -19,7 +19,7 @@ __attribute__((target("avx2"))) void gather_neighbours(const VertexRecord* verti
     for (std::size_t k = 0; k < 8; ++k) {
       const VertexRecord& neighbour = vertices[batch.ring[i].vertex[k]];
       rows[k] = &neighbour;
-      around.c[k] = neighbour.c;
+      around.c[k] = neighbour.quadric.c;
     }
     turn_eight(rows, {around.words[0].data(), around.words[1].data(), around.words[2].data(),
                       around.words[3].data()});
@@ -36,7 +36,7 @@ void gather_neighbours(const VertexRecord* vertices, CoarsenBatch& batch) {
       for (std::size_t j = 0; j < 4; ++j) {
         const VertexRecord& neighbour = vertices[batch.ring[i].vertex[k + j]];
         rows[j] = &neighbour;
-        around.c[k + j] = neighbour.c;
+        around.c[k + j] = neighbour.quadric.c;
       }
       turn_four(rows, {&around.words[0][k], &around.words[1][k], &around.words[2][k], &around.words[3][k]});
     }
@@ -48,13 +48,10 @@ VKMESH_CLONES void find_best(const VertexRecord* vertices, const VertexRange& ra
     const VertexRecord& p = vertices[batch.vertex[i]];
     const CoarsenBatch::Ring& ring = batch.ring[i];
     const CoarsenBatch::Around& around = batch.around[i];
-    const auto& a = p.a;
-    const auto& b = p.b;
     std::uint32_t least = CoarsenBatch::kNone, outside = 0, size = kMaxNeighbours;
     for (std::uint32_t k = 0; k < kMaxNeighbours; ++k) {
-      const float x = around.words[0][k] - p.position[0], y = around.words[1][k] - p.position[1],
-                  z = around.words[2][k] - p.position[2];
-      const float cost = quadric_value(a, b, p.c, x, y, z) + around.c[k];
+      const Vector3 there = {around.words[0][k], around.words[1][k], around.words[2][k]};
+      const float cost = p.quadric.value(minus(there, p.position)) + around.c[k];
       const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMaxNeighbours * kMaxNeighbours + k;
       least = least < bits ? least : bits;
       outside |= range.holds(ring.vertex[k]) ? 0u : 1u;

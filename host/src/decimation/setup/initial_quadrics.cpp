@@ -15,12 +15,12 @@ namespace {
 /// What a plane through a vertex adds to its quadric: its weight, and w n nᵀ. With a 0 more these are the
 /// words of a VertexRecord from `weight` to `c`.
 using PlaneWords = std::array<float, 8>;
-static_assert(offsetof(VertexRecord, weight) == 16 && offsetof(VertexRecord, a) == 20 &&
-              offsetof(VertexRecord, c) == 44);
+static_assert(offsetof(VertexRecord, weight) == 16 && offsetof(VertexRecord, quadric.a) == 20 &&
+              offsetof(VertexRecord, quadric.c) == 44);
 
-[[gnu::always_inline]] inline PlaneWords words_of(float x, float y, float z, float w) {
-  const float wx = w * x, wy = w * y, wz = w * z;
-  return {w, wx * x, wx * y, wx * z, wy * y, wy * z, wz * z, 0.0f};
+[[gnu::always_inline]] inline PlaneWords words_of(const Vector3& normal, float w) {
+  const Symmetric3 a = plane_quadric<HostArithmetic>(normal, w);
+  return {w, a[0], a[1], a[2], a[3], a[4], a[5], 0.0f};
 }
 
 [[gnu::always_inline]] inline void add_words(VertexRecord& v, const PlaneWords& words) {
@@ -40,14 +40,16 @@ struct FaceBatch {
 
 /// The planes, weighted by half the area; nothing for a face of no area.
 VKMESH_CLONES void find_planes(FaceBatch& batch) {
-  const auto& [a, b, c] = batch.corner;
+  const auto at = [&](std::size_t corner, std::size_t i) __attribute__((always_inline)) {
+    const auto& [x, y, z, rest] = batch.corner[corner];
+    return Vector3{x[i], y[i], z[i]};
+  };
   for (std::size_t i = 0; i < FaceBatch::kSize; ++i) {
-    const float sx = b[0][i] - a[0][i], sy = b[1][i] - a[1][i], sz = b[2][i] - a[2][i];
-    const float rx = c[0][i] - b[0][i], ry = c[1][i] - b[1][i], rz = c[2][i] - b[2][i];
-    const float nx = sy * rz - sz * ry, ny = sz * rx - sx * rz, nz = sx * ry - sy * rx;
-    const float length = std::sqrt(nx * nx + ny * ny + nz * nz);
+    const Vector3 a = at(0, i), b = at(1, i), c = at(2, i);
+    const Vector3 n = cross(minus(b, a), minus(c, b));
+    const float length = std::sqrt(dot(n, n));
     const float by = length > 0 ? length : 1.0f;
-    const PlaneWords words = words_of(nx / by, ny / by, nz / by, 0.5f * length);
+    const PlaneWords words = words_of({n[0] / by, n[1] / by, n[2] / by}, 0.5f * length);
     for (std::size_t k = 0; k < 8; ++k) batch.words[k][i] = words[k];
   }
 }
@@ -90,17 +92,13 @@ void add_faces(CollapseMesh& mesh, const VertexRanges::Range& range) {
 }
 
 struct AreaVector {
-  std::array<float, 3> twice;
+  Vector3 twice;
   float length;
 };
 AreaVector area_of(const CollapseMesh& mesh, const CollapseMesh::Face& face) {
-  const auto &a = mesh.vertices[face.origin[0]].position, &b = mesh.vertices[face.origin[1]].position,
-             &c = mesh.vertices[face.origin[2]].position;
-  const std::array<float, 3> s = {b[0] - a[0], b[1] - a[1], b[2] - a[2]},
-                             r = {c[0] - b[0], c[1] - b[1], c[2] - b[2]};
-  const std::array<float, 3> n = {s[1] * r[2] - s[2] * r[1], s[2] * r[0] - s[0] * r[2],
-                                  s[0] * r[1] - s[1] * r[0]};
-  return {n, std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])};
+  const auto at = [&](std::size_t i) { return mesh.vertices[face.origin[i]].position; };
+  const Vector3 n = cross(minus(at(1), at(0)), minus(at(2), at(1)));
+  return {n, std::sqrt(dot(n, n))};
 }
 
 /// Of the plane that stands on an edge between two faces; 0: none does.
@@ -118,15 +116,15 @@ void add_constraint(CollapseMesh& mesh, const VertexRanges::Range& range, std::u
   const std::uint32_t from = mesh.origin(h), to = mesh.target(h);
   if (!(weight > 0) || (!range.has(from) && !range.has(to))) return;
   const AreaVector area = area_of(mesh, mesh.face(h));
-  const auto &a = mesh.vertices[from].position, &b = mesh.vertices[to].position;
-  const std::array<float, 3> e = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  const float squared = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+  const Vector3 e = minus(mesh.vertices[to].position, mesh.vertices[from].position);
+  const float squared = dot(e, e);
   if (!(area.length > 0) || !(squared > 0)) return;
-  std::array<float, 3> n = area.twice;
+  Vector3 n = area.twice;
   for (float& x : n) x /= area.length;
   const float root = std::sqrt(squared);
-  const PlaneWords words = words_of((e[1] * n[2] - e[2] * n[1]) / root, (e[2] * n[0] - e[0] * n[2]) / root,
-                                    (e[0] * n[1] - e[1] * n[0]) / root, weight * squared);
+  n = cross(e, n);
+  for (float& x : n) x /= root;
+  const PlaneWords words = words_of(n, weight * squared);
   for (const std::uint32_t v : {from, to})
     if (range.has(v)) add_words(mesh.vertices[v], words);
 }

@@ -12,20 +12,18 @@
 
 #include "base/large_array.h"
 #include "base/prefetch.h"
+#include "math/quadric.h"
 #include "mesh/edit/vertex_ranges.h"
 
 namespace vkmesh::detail {
 
-/// What decimation knows of a vertex, in one cache line: its place, the quadric Σ w (n·(x − position) − d)²
-/// of the planes that it stands for as xᵀA x + 2 b·x + c about its place, the sum of their weights, and where
-/// its fan begins.
+/// What decimation knows of a vertex, in one cache line: its place, the sum of the weighted planes that
+/// it stands for as a quadric, the sum of their weights, and where its fan begins.
 struct alignas(64) VertexRecord {
   std::array<float, 3> position;
   std::uint32_t source;  // its number in the input, and flags
   float weight;
-  std::array<float, 6> a;  // xx, xy, xz, yy, yz, zz
-  float c;
-  std::array<float, 3> b;
+  Quadric quadric;  // about its place
   /// A half-edge that leaves it; kGone | the vertex that absorbed it; kInvalid when it is isolated.
   std::uint32_t leading;
 
@@ -43,57 +41,13 @@ struct alignas(64) VertexRecord {
 
   [[nodiscard]] bool has(std::uint32_t flag) const { return (source & flag) != 0; }
   [[nodiscard]] bool alive() const { return (leading & kGone) == 0; }
-
-  /// Moves the point about which the quadric is expressed.
-  [[gnu::always_inline]] void shift(const std::array<float, 3>& d) {
-#if defined(__GNUC__) || defined(__clang__)
-    // The same sums, three at a time.
-    using Four = float __attribute__((vector_size(16)));
-    const auto four_at = [](const float* from) {
-      Four four;
-      __builtin_memcpy(&four, from, sizeof four);
-      return four;
-    };
-    const Four second = four_at(&a[1]), third = four_at(&a[2]), old = four_at(b.data());
-    const Four ad = four_at(a.data()) * d[0] + __builtin_shufflevector(second, second, 0, 2, 3, 3) * d[1] +
-                    __builtin_shufflevector(third, third, 0, 2, 3, 3) * d[2];
-    const Four along = Four{d[0], d[1], d[2], 0} * (ad + 2 * old);
-    const float sum = c + along[0] + along[1] + along[2];
-    const Four now = old + ad;
-    b = {now[0], now[1], now[2]};
-#else
-    const std::array<float, 3> ad = {a[0] * d[0] + a[1] * d[1] + a[2] * d[2],
-                                     a[1] * d[0] + a[3] * d[1] + a[4] * d[2],
-                                     a[2] * d[0] + a[4] * d[1] + a[5] * d[2]};
-    const float sum = c + d[0] * (ad[0] + 2 * b[0]) + d[1] * (ad[1] + 2 * b[1]) + d[2] * (ad[2] + 2 * b[2]);
-    for (std::size_t k = 0; k < 3; ++k) b[k] += ad[k];
-#endif
-    c = sum > 0 ? sum : 0.0f;
-  }
-  /// Adds a share of a quadric about the same point.
-  [[gnu::always_inline]] void add_quadric(const VertexRecord& of, float share = 1) {
-    for (std::size_t k = 0; k < 6; ++k) a[k] += share * of.a[k];
-    for (std::size_t k = 0; k < 3; ++k) b[k] += share * of.b[k];
-    c += share * of.c;
-  }
 };
 static_assert(sizeof(VertexRecord) == 64);
 static_assert(offsetof(VertexRecord, source) == 4 * VertexRecord::kSource &&
-              offsetof(VertexRecord, a) == 4 * VertexRecord::kA &&
-              offsetof(VertexRecord, c) == 4 * VertexRecord::kC &&
-              offsetof(VertexRecord, b) == 4 * VertexRecord::kB &&
+              offsetof(VertexRecord, quadric.a) == 4 * VertexRecord::kA &&
+              offsetof(VertexRecord, quadric.c) == 4 * VertexRecord::kC &&
+              offsetof(VertexRecord, quadric.b) == 4 * VertexRecord::kB &&
               offsetof(VertexRecord, leading) == 4 * VertexRecord::kLeading);
-
-/// Of the quadric (a, b, c) at (x, y, z); what rounding leaves below 0 is 0.
-[[gnu::always_inline]] inline float quadric_value(const std::array<float, 6>& a,
-                                                  const std::array<float, 3>& b, float c, float x, float y,
-                                                  float z) {
-  const float ax = a[0] * x + a[1] * y + a[2] * z;
-  const float ay = a[1] * x + a[3] * y + a[4] * z;
-  const float az = a[2] * x + a[4] * y + a[5] * z;
-  const float sum = c + x * (ax + 2 * b[0]) + y * (ay + 2 * b[1]) + z * (az + 2 * b[2]);
-  return sum > 0 ? sum : 0.0f;
-}
 
 /// The mesh closed by one extra vertex, the apex, joined to every boundary edge by a triangle, its ghost:
 /// there is no boundary, so no walk has a special case, and the link condition of the closed complex is that
