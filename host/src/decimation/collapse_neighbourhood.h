@@ -18,7 +18,7 @@ namespace vkmesh::detail {
 /// nothing.
 class CollapseNeighbourhood {
  public:
-  using Vector = std::array<float, 3>;
+  using Vector = Vector3;
   /// So many faces are looked at at a time; whole blocks can be read.
   static constexpr std::size_t kBlock = 16;
 

@@ -23,6 +23,7 @@
 #include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/legality/criteria.h"
+#include "decimation/legality/judge.h"
 #include "decimation/legality/local_change.h"
 #include "decimation/order/collapse_queues.h"
 #include "decimation/order/pending_edges.h"
@@ -361,12 +362,12 @@ class EdgeCollapses {
       return;
     }
     EdgeRings rings;
-    const Reason legality = judge(b, i, p, q, rings);
-    if (legality == Reason::kNone) {
+    const Reason reason = judge_edge(b, i, p, q, rings);
+    if (reason == Reason::kNone) {
       if (!Placement::kByCriteria && watches_distance() && is_put_off(due, p, q)) return;
       collapse(due, p, q, rings);
     } else {
-      ++share_->state.outcome.rejected[legality];
+      ++share_->state.outcome.rejected[reason];
       mesh_.clear_queued(h);
       mesh_.set_parked(h);
       vertices_[p].source |= VertexRecord::kHasParked;
@@ -397,25 +398,39 @@ class EdgeCollapses {
     alone.due[0] = due_of(0, h);
     alone.walked[0].size = WalkedRing::kTooLong;
     EdgeRings rings;
-    return judge(alone, 0, mesh_.origin(h), mesh_.target(h), rings);
+    return judge_edge(alone, 0, mesh_.origin(h), mesh_.target(h), rings);
   }
 
-  /// Sets `rings` when it comes to that.
-  [[nodiscard]] Reason judge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
-                             EdgeRings& rings) {
-    const Due& due = b.due[i];
-    if (due.end == EdgeBatch::kLocked) return Reason::kLocked;
-    if constexpr (kAttributes)
-      if (!share_->state.attributes->wedges().keeps_seams(mesh_, due.half_edge)) return Reason::kSeam;
-    if (merger_.exceeds_error(share_->state, due, p, q)) return Reason::kErrorBound;
-    rings = rings_of(b, i);
-    if (const Reason shape = merger_.judge(due, p, q, rings, share_->state.limits.cos_deviation);
-        shape != Reason::kNone)
-      return shape;
-    return share_->state.criteria == nullptr || !share_->state.criteria->bounds() ||
-                   meets_criteria(due, p, q, rings)
-               ? Reason::kNone
-               : Reason::kCriterion;
+  /// The collapse of edge i of a batch, as judge() takes it. It looks around, and sets the rings, when it
+  /// comes to the link condition.
+  struct Change : Merger::Change {
+    EdgeCollapses& self;
+    const Pending& batch;
+    std::size_t i;
+
+    [[nodiscard]] const DecimationState& state() const { return self.share_->state; }
+    [[nodiscard]] bool is_locked() const { return this->due.end == EdgeBatch::kLocked; }
+    [[nodiscard]] bool keeps_seams() const {
+      if constexpr (kAttributes)
+        return state().attributes->wedges().keeps_seams(self.mesh_, this->due.half_edge);
+      return true;
+    }
+    [[nodiscard]] bool exceeds_error() const {
+      return self.merger_.exceeds_error(state(), this->due, this->p, this->q);
+    }
+    [[nodiscard]] bool meets_link_condition() const {
+      this->rings = self.rings_of(batch, i);
+      return Merger::Change::meets_link_condition();
+    }
+    [[nodiscard]] bool meets_criteria() const {
+      return state().criteria == nullptr || !state().criteria->bounds() ||
+             self.meets_criteria(this->due, this->p, this->q, this->rings);
+    }
+  };
+  [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
+                                  EdgeRings& rings) {
+    return judge(
+        Change{{{}, merger_, b.due[i], p, q, rings, share_->state.limits.cos_deviation}, *this, b, i});
   }
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q,

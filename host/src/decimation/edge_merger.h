@@ -16,6 +16,8 @@
 #include "decimation/cost/tangential_drift.h"
 #include "decimation/decimation_state.h"
 #include "decimation/legality/fold_over.h"
+#include "decimation/legality/judge.h"
+#include "decimation/legality/link_condition.h"
 #include "mesh/edit/collapse_mesh.h"
 
 namespace vkmesh::detail {
@@ -53,15 +55,25 @@ class EdgeMerger {
   }
   [[nodiscard]] std::uint32_t flags_around() const { return summary_.flags; }
 
-  /// Whether the surface stays what it is, and no face turns by more than the angle of this cosine: of the
-  /// edge around which it was looked.
-  [[nodiscard]] Reason judge(const DueEdge& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings,
-                             float cos_deviation) {
-    if (!link_condition(rings)) return Reason::kLinkCondition;
-    return folds_over(neighbourhood_, vertices_[p].position, vertices_[q].position, due.x, cos_deviation)
-               ? Reason::kFoldOver
-               : Reason::kNone;
-  }
+  /// The collapse of the edge around which it was looked, as judge() takes it.
+  struct Change : AlwaysLegal {
+    EdgeMerger& merger;
+    const DueEdge& due;
+    std::uint32_t p, q;
+    EdgeRings& rings;
+    float cos_deviation;  // a face may turn by so much
+
+    [[nodiscard]] bool meets_link_condition() const {
+      // Rings of a usual size were compared when it was looked around.
+      const bool are_compared = std::max(rings.p.size(), rings.q.size()) <= 8 + 2 && rings.p.size() > 2;
+      if (are_compared && !merger.summary_.may_share) return rings.p.front() != rings.p.back();
+      return detail::meets_link_condition(rings.p, rings.q, merger.sorted_);
+    }
+    [[nodiscard]] bool folds_over() const {
+      return detail::folds_over(merger.neighbourhood_, merger.vertices_[p].position,
+                                merger.vertices_[q].position, due.x, cos_deviation);
+    }
+  };
   /// See squared_distance_of_collapse; of the same edge.
   [[nodiscard]] float squared_distance(const DueEdge& due, std::uint32_t p, std::uint32_t q,
                                        float allowed) const {
@@ -148,20 +160,6 @@ class EdgeMerger {
                                      std::uint32_t q) const {
     if constexpr (kAttributes) return state.attributes->geometric_cost(p, q, due.x);
     return due.cost;
-  }
-
-  /// p and q share two neighbours, those across the edge's faces, and the four are no tetrahedron. Each ring
-  /// starts with one of the two and ends with the other. No two edges join the same vertices.
-  [[nodiscard]] bool link_condition(const EdgeRings& rings) {
-    if (rings.p.front() == rings.p.back()) return false;
-    if (rings.p.size() == 2 && rings.q.size() == 2) return false;
-    // The usual number of vertices was looked at before.
-    if (std::max(rings.p.size(), rings.q.size()) <= 8 + 2 && !summary_.may_share) return true;
-    sorted_.assign(rings.p.begin() + 1, rings.p.end() - 1);
-    std::sort(sorted_.begin(), sorted_.end());
-    return std::none_of(rings.q.begin() + 1, rings.q.end() - 1, [&](std::uint32_t v) {
-      return std::binary_search(sorted_.begin(), sorted_.end(), v);
-    });
   }
 
   CollapseMesh& mesh_;

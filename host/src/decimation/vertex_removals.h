@@ -20,6 +20,9 @@
 #include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/legality/criteria.h"
+#include "decimation/legality/fold_over.h"
+#include "decimation/legality/judge.h"
+#include "decimation/legality/link_condition.h"
 #include "decimation/legality/local_change.h"
 #include "decimation/vertex_stars.h"
 #include "mesh/edit/collapse_mesh.h"
@@ -125,10 +128,8 @@ class VertexRemovals {
         evaluate([&](const VertexStar& star, std::size_t lane) {
           if (!(batch_.error[lane] < kNone)) return count(Reason::kFoldOver);
           Removal removal = removal_of(star, lane);
-          if (!keeps_seams(star)) return count(Reason::kSeam);
-          if (is_pillow(star)) return count(Reason::kLinkCondition);
-          avoid_existing(removal);
-          count(removal.error < kNone ? judge(removal) : Reason::kLinkCondition);
+          removal.has_existing = true;  // some may be so, which the triangulation must avoid
+          count(judge_removal(removal));
         });
       }
     }
@@ -157,7 +158,8 @@ class VertexRemovals {
     float error, of_attributes;
     Triangles triangles;
     Receivers receivers;
-    bool has_existing;  // a new edge that the mesh has already
+    bool has_existing;             // a new edge that the mesh has already
+    bool is_filled_again = false;  // to avoid such edges
   };
   /// A walk around the end of a new edge, in search of the other.
   struct Search {
@@ -278,49 +280,62 @@ class VertexRemovals {
       }
     }
     for (const Search& search : std::span(searches_).first(left))
-      search.removal->has_existing |= has_edge(mesh_.origin(search.stop), search.other);
+      search.removal->has_existing |= has_edge(mesh_, mesh_.origin(search.stop), search.other);
   }
 
   /// Removes a vertex, if that is legal.
   void attempt(Removal& removal) {
     const VertexStar& star = *removal.star;
     const std::uint32_t v = star.vertex;
-    if (!keeps_seams(star)) return park(v, Reason::kSeam);
-    if (too_far(v, removal.error)) return park(v, Reason::kErrorBound);
-    if (is_pillow(star)) return park(v, Reason::kLinkCondition);
-    for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
-      const std::uint32_t p = star.target[a], q = star.target[b];
-      if (vertices_[p].has(VertexRecord::kTouched) && vertices_[q].has(VertexRecord::kTouched))
-        removal.has_existing |= has_edge(p, q);
-    });
-    if (removal.has_existing) {
-      avoid_existing(removal);
-      if (!(removal.error < kNone)) return park(v, Reason::kLinkCondition);
+    const Reason reason = judge_removal(removal);
+    if (removal.is_filled_again && removal.error < kNone) {
       const float cost = cost_of(removal);
       if (!queue_.is_due(v, cost)) return queue_.insert(v, cost);
     }
-    if (const Reason legality = judge(removal); legality != Reason::kNone) return park(v, legality);
+    if (reason != Reason::kNone) return park(v, reason);
     remove(removal);
   }
 
-  /// The faces across from v are one already: what is left would be a triangle on itself.
-  [[nodiscard]] bool is_pillow(const VertexStar& star) const {
-    return star.edges == 3 && (beyond(star, 0) >> 2) == (beyond(star, 1) >> 2);
-  }
+  /// A removal as judge() takes it.
+  struct Change : AlwaysLegal {
+    VertexRemovals& self;
+    Removal& removal;
 
-  [[nodiscard]] bool keeps_seams([[maybe_unused]] const VertexStar& star) const {
-    if constexpr (kAttributes)
-      return state_.attributes->wedges().keeps_seams(mesh_, star.all_edges(), star.sides);
-    return true;
-  }
-
-  /// Of a removal that makes no edge which is there.
-  [[nodiscard]] Reason judge(const Removal& removal) {
-    const VertexStar& star = *removal.star;
-    if (too_far(star.vertex, removal.error)) return Reason::kErrorBound;
-    if (folds_over(star, removal.triangles)) return Reason::kFoldOver;
-    const bool bound = state_.criteria != nullptr && state_.criteria->bounds();
-    return bound && !meets_criteria(star, removal.triangles) ? Reason::kCriterion : Reason::kNone;
+    [[nodiscard]] const VertexStar& star() const { return *removal.star; }
+    [[nodiscard]] bool keeps_seams() const {
+      if constexpr (kAttributes)
+        return self.state_.attributes->wedges().keeps_seams(self.mesh_, star().all_edges(), star().sides);
+      return true;
+    }
+    [[nodiscard]] bool exceeds_error() const {
+      return static_cast<double>(removal.error) >
+             self.state_.limits.error2 * static_cast<double>(self.vertices_[star().vertex].weight);
+    }
+    /// Fills the hole again if the mesh has a new edge already.
+    [[nodiscard]] bool meets_link_condition() const {
+      if (is_tip_of_tetrahedron(self.mesh_, star().all_edges())) return false;
+      for_new_edges(star(), removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
+        const std::uint32_t p = star().target[a], q = star().target[b];
+        if (self.vertices_[p].has(VertexRecord::kTouched) && self.vertices_[q].has(VertexRecord::kTouched))
+          removal.has_existing |= has_edge(self.mesh_, p, q);
+      });
+      if (removal.has_existing) self.avoid_existing(removal);
+      return removal.error < kNone && !(removal.is_filled_again && exceeds_error());
+    }
+    [[nodiscard]] bool folds_over() const {
+      const std::span<const std::uint32_t> ring = std::span(star().target).first(star().neighbours());
+      return detail::folds_over(self.vertices_, star().vertex, ring, star().closed, removal.triangles.all());
+    }
+    [[nodiscard]] bool meets_criteria() const {
+      const Criteria* const criteria = self.state_.criteria;
+      return criteria == nullptr || !criteria->bounds() || self.meets_criteria(star(), removal.triangles);
+    }
+  };
+  [[nodiscard]] Reason judge_removal(Removal& removal) {
+    const Reason reason = judge(Change{{}, *this, removal});
+    // Without the edges that are there already it may cost more than it did.
+    const bool costs_more = removal.is_filled_again && removal.error < kNone;
+    return reason == Reason::kLinkCondition && costs_more ? Reason::kErrorBound : reason;
   }
 
   /// What the queue holds a vertex under; kNone when it can not go.
@@ -400,6 +415,7 @@ class VertexRemovals {
     set(other_, other_attributes_, std::span(&walked, 1));
     while (bar_existing(star, removal.triangles)) {
       fill(other_, other_attributes_, star.neighbours());
+      removal.is_filled_again = true;
       removal.error = other_.error[0];
       removal.of_attributes = error_of_attributes(other_attributes_, 0);
       if (!(removal.error < kNone)) break;
@@ -407,10 +423,6 @@ class VertexRemovals {
       removal.receivers = receivers_of(other_, 0, star);
     }
     for (auto& barred : other_.barred) barred[0] = 0;
-  }
-
-  [[nodiscard]] bool too_far(std::uint32_t v, float error) const {
-    return static_cast<double>(error) > state_.limits.error2 * static_cast<double>(vertices_[v].weight);
   }
 
   /// Beyond the face between neighbour i and the next.
@@ -453,71 +465,12 @@ class VertexRemovals {
   bool bar_existing(const VertexStar& star, const Triangles& triangles) {
     bool found = false;
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) {
-      if (!has_edge(star.target[a], star.target[b])) return;
+      if (!has_edge(mesh_, star.target[a], star.target[b])) return;
       other_.barred[RetriangulationBatch::pair(a, b)][0] = kNone;
       found = true;
     });
     return found;
   }
-  /// Around both ends at once: one may have many edges.
-  [[nodiscard]] bool has_edge(std::uint32_t p, std::uint32_t q) const {
-    const std::uint32_t p0 = vertices_[p].leading, q0 = vertices_[q].leading;
-    std::uint32_t at_p = p0, at_q = q0;
-    do {
-      if (mesh_.target(at_p) == q || mesh_.target(at_q) == p) return true;
-      at_p = mesh_.around_vertex(at_p);
-      at_q = mesh_.around_vertex(at_q);
-    } while (at_p != p0 && at_q != q0);
-    return false;
-  }
-
-  using Vector = std::array<float, 3>;
-  [[nodiscard]] Vector normal(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    const Vector &p = vertices_[a].position, &q = vertices_[b].position, &r = vertices_[c].position;
-    const Vector s = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, t = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
-    return {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
-  }
-  [[nodiscard]] static float dot(const Vector& a, const Vector& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  }
-  [[nodiscard]] static float cosine(const Vector& a, const Vector& b) {
-    const float lengths = std::sqrt(dot(a, a)) * std::sqrt(dot(b, b));
-    return lengths > 0 ? dot(a, b) / lengths : 1.0f;
-  }
-
-  /// Whether two neighbouring triangles stand against each other by more than 120 degrees and by more than
-  /// any did before.
-  [[nodiscard]] bool folds_over(const VertexStar& star, const Triangles& triangles) const {
-    constexpr double kAgainst2 = 0.25;  // the cosine, squared
-    const std::size_t n = star.neighbours();
-    std::array<Vector, kMaxNeighbours> normals;
-    std::array<float, kMaxNeighbours> squared;
-    std::array<std::array<std::uint8_t, kMaxNeighbours>, kMaxNeighbours>
-        below;  // by a new edge the triangle before it
-    bool against = false;
-    float after = 1;
-    for (std::size_t t = star.closed ? 0 : 1; t < triangles.count; ++t) {
-      const auto& [a, b, c] = triangles.of[t];
-      normals[t] = normal(star.target[a], star.target[b], star.target[c]);
-      squared[t] = dot(normals[t], normals[t]);
-      below[a][b] = below[b][c] = static_cast<std::uint8_t>(t);
-      if (a == 0 && c + 1u == n) continue;
-      const std::size_t other = below[a][c];
-      const auto along = static_cast<double>(dot(normals[t], normals[other]));
-      if (along >= 0 || along * along <= kAgainst2 * squared[t] * squared[other]) continue;
-      against = true;
-      after = std::min(after, cosine(normals[t], normals[other]));
-    }
-    if (!against) return false;
-    const auto face = [&](std::size_t i) {
-      return normal(star.vertex, star.target[i % n], star.target[(i + 1) % n]);
-    };
-    float before = 1;
-    for (std::size_t i = 0; i + (star.closed ? 0 : 2) < n; ++i)
-      before = std::min(before, cosine(face(i), face(i + 1)));
-    return after < before;
-  }
-
   void park(std::uint32_t v, Reason why) {
     ++state_.outcome.rejected[why];
     vertices_[v].source |= VertexRecord::kHasParked;

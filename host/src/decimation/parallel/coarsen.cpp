@@ -113,8 +113,8 @@ void RangeCoarsening::attempt(std::size_t i) {
   const auto chosen = [](const std::array<std::uint32_t, 3 * CoarsenBatch::kMaxNeighbours>& words,
                          std::size_t first,
                          std::size_t count) { return EdgeRings::Ring(words).subspan(first, count); };
-  const EdgeRings rings{chosen(at_p.vertex, best + 1, batch.size[i] - 1), chosen(at_q.vertex, 0, size - 1),
-                        chosen(at_p.edge, best + 1, batch.size[i] - 1), chosen(at_q.edge, 0, size - 1)};
+  EdgeRings rings{chosen(at_p.vertex, best + 1, batch.size[i] - 1), chosen(at_q.vertex, 0, size - 1),
+                  chosen(at_p.edge, best + 1, batch.size[i] - 1), chosen(at_q.edge, 0, size - 1)};
   // The rings are as they were unless a vertex of theirs went.
   if ((merger_.look_around(rings) & VertexRecord::kAbsorbed) != 0) return;
   const DueEdge edge{
@@ -123,7 +123,8 @@ void RangeCoarsening::attempt(std::size_t i) {
       EdgeBatch::kAtQ,
       {vq.position[0] - vp.position[0], vq.position[1] - vp.position[1], vq.position[2] - vp.position[2]}};
   const float cos_deviation = std::max(state_.limits.cos_deviation, kCosSmooth);
-  if (merger_.judge(edge, p, q, rings, cos_deviation) != Reason::kNone) return;
+  if (judge(EdgeMerger<false>::Change{{}, merger_, edge, p, q, rings, cos_deviation}) != Reason::kNone)
+    return;
   merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q, rings), 0);
   touched_.push_back(q);
   vertices_[p].source |= VertexRecord::kAbsorbed;
