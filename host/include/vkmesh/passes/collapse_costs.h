@@ -1,4 +1,5 @@
-// The quadric of every vertex and the cost of collapsing every edge: the first fill of decimation's queues.
+// The quadric of every vertex and the cost of collapsing every edge, by the arithmetic that is the same on every
+// device. Decimation computes its own, in the host's (math/quadric.h).
 #pragma once
 
 #include <array>
