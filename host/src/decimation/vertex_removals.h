@@ -222,24 +222,22 @@ class VertexRemovals {
     alignas(16) std::array<float, 4> unused;
     for (std::size_t lane = 0; lane < walked.size(); lane += 4) {
       std::array<const VertexStar*, 4> stars;
-      std::array<const void*, 4> rows;
+      std::array<const void*, 4> records;
       for (std::size_t i = 0; i < 4; ++i) {
         stars[i] = &stars_[walked[std::min(lane + i, walked.size() - 1)]];
         batch.closed[lane + i] = stars[i]->closed ? 1.0f : 0.0f;
+        records[i] = &vertices_[stars[i]->vertex];
       }
-      const auto words = [&](std::size_t from) {
-        for (std::size_t i = 0; i < 4; ++i)
-          rows[i] = reinterpret_cast<const char*>(&vertices_[stars[i]->vertex]) + 4 * from;
-        return rows;
-      };
-      const auto at = [&](RetriangulationBatch::Lanes& lanes) { return &lanes[lane]; };
-      turn_four(words(0), {at(batch.v[0]), at(batch.v[1]), at(batch.v[2]), unused.data()});
-      turn_four(words(4), {at(batch.weight), at(batch.a[0]), at(batch.a[1]), at(batch.a[2])});
-      turn_four(words(8), {at(batch.a[3]), at(batch.a[4]), at(batch.a[5]), at(batch.c)});
-      turn_four(words(12), {at(batch.b[0]), at(batch.b[1]), at(batch.b[2]), unused.data()});
+      const std::array<float*, 16> to = {
+          &batch.v[0][lane],   &batch.v[1][lane], &batch.v[2][lane], unused.data(),
+          &batch.weight[lane], &batch.a[0][lane], &batch.a[1][lane], &batch.a[2][lane],
+          &batch.a[3][lane],   &batch.a[4][lane], &batch.a[5][lane], &batch.c[lane],
+          &batch.b[0][lane],   &batch.b[1][lane], &batch.b[2][lane], unused.data()};
+      transpose_records<16>(records, [&](std::size_t word) { return to[word]; });
       for (std::size_t k = 0; k < stars[0]->neighbours(); ++k) {
-        for (std::size_t i = 0; i < 4; ++i) rows[i] = &vertices_[stars[i]->target[k]];
-        turn_four(rows, {at(batch.ring[k][0]), at(batch.ring[k][1]), at(batch.ring[k][2]), unused.data()});
+        for (std::size_t i = 0; i < 4; ++i) records[i] = &vertices_[stars[i]->target[k]];
+        auto& [x, y, z] = batch.ring[k];
+        transpose_4x4(records, {&x[lane], &y[lane], &z[lane], unused.data()});
       }
     }
   }

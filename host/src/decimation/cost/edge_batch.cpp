@@ -55,52 +55,14 @@ using enum VertexRecord::Word;
   batch.cost[i] = cost;
 }
 
-/// Some of `count` records of vertices, those from number i on; their numbers are every `stride`-th of `ids`.
-/// The last comes again where there are no more.
-template <std::size_t kSome>
-[[gnu::always_inline]] inline std::array<const char*, kSome> records_of(const VertexRecord* vertices,
-                                                                        const std::uint32_t* ids,
-                                                                        std::size_t stride, std::size_t i,
-                                                                        std::size_t count) {
-  std::array<const char*, kSome> records;
-  const auto record = [&](std::size_t k) {
-    return reinterpret_cast<const char*>(&vertices[ids[k * stride]]);
-  };
-  if (i + kSome <= count)
-    for (std::size_t k = 0; k < kSome; ++k) records[k] = record(i + k);
-  else
-    for (std::size_t k = 0; k < kSome; ++k) records[k] = record(std::min(i + k, count - 1));
-  return records;
-}
-
-// Turns records from rows to columns: lanes [0, count) of `to`.
-#if defined(VKMESH_HAS_CLONES)
-// The same, eight at a time; the compiler does not find that by itself.
-__attribute__((target("avx2"))) void gather_records(const VertexRecord* vertices, const std::uint32_t* ids,
-                                                    std::size_t stride, std::size_t count,
-                                                    EdgeBatch::Words& to) {
-  for (std::size_t i = 0; i < count; i += 8) {
-    const auto r = records_of<8>(vertices, ids, stride, i, count);
-#pragma GCC unroll 4
-    for (std::size_t g = 0; g < 16; g += 4) {
-      const std::size_t at = sizeof(float) * g;
-      turn_eight({r[0] + at, r[1] + at, r[2] + at, r[3] + at, r[4] + at, r[5] + at, r[6] + at, r[7] + at},
-                 {&to[g][i], &to[g + 1][i], &to[g + 2][i], &to[g + 3][i]});
-    }
-  }
-}
-
-__attribute__((target("default")))
-#endif
+// Takes records of vertices apart: lanes [0, count) of `to`. Their numbers are every `stride`-th of `ids`;
+// the last comes again where there are no more.
 void gather_records(const VertexRecord* vertices, const std::uint32_t* ids, std::size_t stride,
                     std::size_t count, EdgeBatch::Words& to) {
   for (std::size_t i = 0; i < count; i += 4) {
-    const auto r = records_of<4>(vertices, ids, stride, i, count);
-    for (std::size_t g = 0; g < 16; g += 4) {
-      const std::size_t at = sizeof(float) * g;
-      turn_four({r[0] + at, r[1] + at, r[2] + at, r[3] + at},
-                {&to[g][i], &to[g + 1][i], &to[g + 2][i], &to[g + 3][i]});
-    }
+    std::array<const void*, 4> records;
+    for (std::size_t k = 0; k < 4; ++k) records[k] = &vertices[ids[std::min(i + k, count - 1) * stride]];
+    transpose_records<16>(records, [&](std::size_t word) { return &to[word][i]; });
   }
 }
 

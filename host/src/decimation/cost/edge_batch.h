@@ -7,6 +7,7 @@
 #include <span>
 
 #include "mesh/edit/collapse_mesh.h"
+#include "simd/lanes.h"
 
 namespace vkmesh::detail {
 
@@ -15,7 +16,7 @@ struct EdgeBatch {
   static constexpr std::size_t kSize = 128;
   /// Kernels work on whole blocks of lanes: what lies in lanes that were not set does not matter.
   static constexpr std::size_t kBlock = 16;
-  using Lanes = std::array<float, kSize>;
+  using Lanes = FloatLanes<kSize>;
   /// The sixteen words of a VertexRecord.
   using Words = std::array<Lanes, 16>;
 

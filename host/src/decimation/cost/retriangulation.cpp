@@ -5,19 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "simd/lanes.h"
 #include "simd/target_clones.h"
-
-// A loop over lanes, which know nothing of each other. g++ 12 would unroll a short one before it looks for
-// vectors, and find none.
-#if defined(__GNUC__) && !defined(__clang__)
-#define VKMESH_LANES(l) _Pragma("GCC ivdep") _Pragma("GCC unroll 1") for (std::size_t l = 0; l < kLanes; ++l)
-#elif defined(__clang__)
-#pragma clang diagnostic ignored "-Wpass-failed"  // where little is optimised
-#define VKMESH_LANES(l) \
-  _Pragma("clang loop vectorize(assume_safety)") for (std::size_t l = 0; l < kLanes; ++l)
-#else
-#define VKMESH_LANES(l) for (std::size_t l = 0; l < kLanes; ++l)
-#endif
 
 namespace vkmesh::detail {
 namespace {
@@ -76,7 +65,7 @@ struct alignas(64) Work {
 // Scaled by a power of two, so that no product leaves the range of a float.
 void scale_ring(const RetriangulationBatch& batch, Work& w) {
   alignas(64) Lanes largest{};
-  for (std::size_t i = 0; i < w.n; ++i) VKMESH_LANES(l) {
+  for (std::size_t i = 0; i < w.n; ++i) VKMESH_FOR_LANES(l, kLanes) {
       const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
                   z = batch.ring[i][2][l] - batch.v[2][l];
       w.ring[i][0][l] = x;
@@ -85,7 +74,7 @@ void scale_ring(const RetriangulationBatch& batch, Work& w) {
       const float squared = x * x + y * y + z * z, before = largest[l];
       largest[l] = squared > before ? squared : before;
     }
-  VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes) {
     const std::int32_t half =
         (static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(largest[l]) >> 23) - 127) >> 1;
     const float scale = std::bit_cast<float>(static_cast<std::uint32_t>(127 - half) << 23);
@@ -96,14 +85,14 @@ void scale_ring(const RetriangulationBatch& batch, Work& w) {
     w.rounding2[l] = kRounding * kRounding * largest[l] * (scale * scale);
   }
   for (std::size_t i = 0; i < w.n; ++i)
-    for (std::size_t k = 0; k < 3; ++k) VKMESH_LANES(l) w.ring[i][k][l] *= w.scale[l];
+    for (std::size_t k = 0; k < 3; ++k) VKMESH_FOR_LANES(l, kLanes) w.ring[i][k][l] *= w.scale[l];
 }
 
 void cross_all(Work& w) {
   for (std::size_t j = 1; j < w.n; ++j)
     for (std::size_t i = 0; i < j; ++i) {
       const std::size_t ij = pair(i, j);
-      VKMESH_LANES(l) {
+      VKMESH_FOR_LANES(l, kLanes) {
         const float ax = w.ring[i][0][l], ay = w.ring[i][1][l], az = w.ring[i][2][l];
         const float bx = w.ring[j][0][l], by = w.ring[j][1][l], bz = w.ring[j][2][l];
         const float dx = bx - ax, dy = by - ay, dz = bz - az;
@@ -122,18 +111,18 @@ void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
   const std::size_t n = w.n;
   for (std::size_t k = 0; k < 3; ++k) {
     w.up[k].fill(0);
-    for (std::size_t i = 0; i + 1 < n; ++i) VKMESH_LANES(l) {
+    for (std::size_t i = 0; i + 1 < n; ++i) VKMESH_FOR_LANES(l, kLanes) {
         const float x = w.cross[pair(i, i + 1)][k][l];
         w.face[i][k][l] = x;
         w.up[k][l] += x;
       }
-    VKMESH_LANES(l) {
+    VKMESH_FOR_LANES(l, kLanes) {
       const float x = batch.closed[l] * -w.cross[pair(0, n - 1)][k][l];
       w.face[n - 1][k][l] = x;
       w.up[k][l] += x;
     }
   }
-  VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes) {
     const float x = w.up[0][l], y = w.up[1][l], z = w.up[2][l];
     const float size = std::sqrt(x * x + y * y + z * z);
     const float over = 1.0f / (size > 0 ? size : 1.0f);
@@ -145,7 +134,7 @@ void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = i + 1 < n ? i + 1 : 0;
-    VKMESH_LANES(l) {
+    VKMESH_FOR_LANES(l, kLanes) {
       const float x = w.face[i][0][l], y = w.face[i][1][l], z = w.face[i][2][l];
       const float ax = w.ring[i][0][l], ay = w.ring[i][1][l], az = w.ring[i][2][l];
       const float bx = w.ring[j][0][l], by = w.ring[j][1][l], bz = w.ring[j][2][l];
@@ -162,9 +151,10 @@ void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t before = i > 0 ? i - 1 : n - 1;
-    VKMESH_LANES(l) w.spoke[i][l] = (w.quarter[before][l] + w.quarter[i][l]) * w.back4[l];
+    VKMESH_FOR_LANES(l, kLanes) w.spoke[i][l] = (w.quarter[before][l] + w.quarter[i][l]) * w.back4[l];
   }
-  VKMESH_LANES(l) w.reliable[n - 1][l] = std::max(w.reliable[n - 1][l], batch.closed[l] > 0 ? 0.0f : kNone);
+  VKMESH_FOR_LANES(l, kLanes)
+  w.reliable[n - 1][l] = std::max(w.reliable[n - 1][l], batch.closed[l] > 0 ? 0.0f : kNone);
 }
 
 // On which side of each edge v lies; around it the ring goes once at most.
@@ -174,15 +164,16 @@ void find_sides(RetriangulationBatch& batch, Work& w) {
     for (std::size_t i = 0; i < j; ++i) {
       const std::size_t ij = pair(i, j);
       const float least = j == i + 1 ? 0.0f : -kNone;
-      VKMESH_LANES(l) {
+      VKMESH_FOR_LANES(l, kLanes) {
         const float x =
             w.up[0][l] * w.cross[ij][0][l] + w.up[1][l] * w.cross[ij][1][l] + w.up[2][l] * w.cross[ij][2][l];
         batch.left[ij][l] = std::max(least, x);
       }
     }
   const std::size_t root = pair(0, n - 1);
-  VKMESH_LANES(l) batch.left[root][l] = std::min(batch.left[root][l], batch.closed[l] > 0 ? 0.0f : kNone);
-  for (std::size_t ij = 0; ij < pair(0, n); ++ij) VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes)
+  batch.left[root][l] = std::min(batch.left[root][l], batch.closed[l] > 0 ? 0.0f : kNone);
+  for (std::size_t ij = 0; ij < pair(0, n); ++ij) VKMESH_FOR_LANES(l, kLanes) {
       const float x = batch.left[ij][l];
       w.ahead[ij][l] = std::max(0.0f, x);
       w.behind[ij][l] = std::max(0.0f, -x);
@@ -190,7 +181,7 @@ void find_sides(RetriangulationBatch& batch, Work& w) {
   alignas(64) Lanes beyond{}, again{};
   for (std::size_t i = 1; i < n; ++i) {
     const std::size_t from_first = pair(0, i);
-    VKMESH_LANES(l) {
+    VKMESH_FOR_LANES(l, kLanes) {
       const float was = beyond[l], found = again[l];
       const float x = w.ahead[from_first][l], y = w.behind[from_first][l];
       const float both = x < was ? x : was;
@@ -198,7 +189,7 @@ void find_sides(RetriangulationBatch& batch, Work& w) {
       beyond[l] = y > was ? y : was;
     }
   }
-  VKMESH_LANES(l) w.illegal[l] = std::max(w.illegal[l], again[l] > 0 ? kNone : 0.0f);
+  VKMESH_FOR_LANES(l, kLanes) w.illegal[l] = std::max(w.illegal[l], again[l] > 0 ? kNone : 0.0f);
 }
 
 /// Where the new edge that a vertex on a boundary or seam goes to ends, which begins at the first neighbour;
@@ -210,7 +201,7 @@ struct Curve {
 
 // The quadric along the normal, and on the new edge of a boundary or seam.
 void find_quadric(const RetriangulationBatch& batch, const Curve& curve, Work& w) {
-  VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes) {
     const float x = w.up[0][l], y = w.up[1][l], z = w.up[2][l];
     const float a0 = batch.a[0][l], a1 = batch.a[1][l], a2 = batch.a[2][l], a3 = batch.a[3][l],
                 a4 = batch.a[4][l], a5 = batch.a[5][l];
@@ -247,7 +238,7 @@ template <unsigned kSides>
 [[gnu::always_inline]] inline void judge_triangle(const RetriangulationBatch& batch, Work& w, std::size_t a,
                                                   std::size_t b, std::size_t c, std::size_t abc) {
   const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c), last = w.n - 1;
-  VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes) {
     const float px = w.cross[bc][0][l], py = w.cross[bc][1][l], pz = w.cross[bc][2][l];
     const float nx = w.cross[ab][0][l] + px - w.cross[ac][0][l];
     const float ny = w.cross[ab][1][l] + py - w.cross[ac][1][l];
@@ -308,17 +299,17 @@ void judge_all(const RetriangulationBatch& batch, Work& w) {
 void add_shapes(const RetriangulationBatch& batch, Work& w) {
   constexpr float kEquilateral = 1.1547005f;  // twice the area over the squared side, inverted
   alignas(64) Lanes most{};
-  for (std::size_t i = 0; i < w.n; ++i) VKMESH_LANES(l) {
+  for (std::size_t i = 0; i < w.n; ++i) VKMESH_FOR_LANES(l, kLanes) {
       const float x = w.ring[i][0][l], y = w.ring[i][1][l], z = w.ring[i][2][l];
       most[l] += (x * x + y * y + z * z) / static_cast<float>(w.n);
     }
-  VKMESH_LANES(l) most[l] *= batch.shape * batch.weight[l] * w.back2[l];
+  VKMESH_FOR_LANES(l, kLanes) most[l] *= batch.shape * batch.weight[l] * w.back2[l];
   std::size_t abc = 0;
   for (std::size_t c = 2; c < w.n; ++c)
     for (std::size_t b = 1; b < c; ++b)
       for (std::size_t a = 0; a < b; ++a, ++abc) {
         const std::size_t ab = pair(a, b), bc = pair(b, c), ac = pair(a, c);
-        VKMESH_LANES(l) {
+        VKMESH_FOR_LANES(l, kLanes) {
           const float nx = w.cross[ab][0][l] + w.cross[bc][0][l] - w.cross[ac][0][l];
           const float ny = w.cross[ab][1][l] + w.cross[bc][1][l] - w.cross[ac][1][l];
           const float nz = w.cross[ab][2][l] + w.cross[bc][2][l] - w.cross[ac][2][l];
@@ -350,7 +341,7 @@ void find_heirs(const RetriangulationBatch& batch, const Curve& curve, const Wor
   for (std::size_t i = 0; i < w.n; ++i) {
     alignas(64) Vectors at;
     auto& [one, other] = attributes.receiver[i];
-    VKMESH_LANES(l) {
+    VKMESH_FOR_LANES(l, kLanes) {
       const float x = batch.ring[i][0][l] - batch.v[0][l], y = batch.ring[i][1][l] - batch.v[1][l],
                   z = batch.ring[i][2][l] - batch.v[2][l];
       const float left = attributes.c[l] + x * (a[0][l] * x + 2 * (a[1][l] * y + a[2][l] * z + b[0][l])) +
@@ -365,7 +356,7 @@ void find_heirs(const RetriangulationBatch& batch, const Curve& curve, const Wor
       for (std::size_t side = 0; side < 2; ++side) {
         const auto& [off, gradient, ring] = component.side[side];
         Lanes& sum = attributes.receiver[i][side];
-        VKMESH_LANES(l) {
+        VKMESH_FOR_LANES(l, kLanes) {
           const float apart = (off[l] - ring[i][l]) + (gradient[0][l] * at[0][l] + gradient[1][l] * at[1][l] +
                                                        gradient[2][l] * at[2][l]);
           sum[l] += component.cost * attributes.weight[side][l] * (apart * apart);
@@ -400,7 +391,7 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
                    ic = static_cast<std::int32_t>(c);
         alignas(64) Lanes whole, crossing{}, counts;
         alignas(64) Flags on_first;
-        VKMESH_LANES(l) {
+        VKMESH_FOR_LANES(l, kLanes) {
           const float sum = w.ahead[ab][l] + w.ahead[bc][l] + w.behind[ac][l];
           whole[l] = sum > 0 ? sum : 1.0f;
           // No triangle across the seam is made, and what it says of edges is no matter of either side.
@@ -410,7 +401,7 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
         }
         for (const auto& component : attributes.components) {
           const RetriangulationAttributes::OnSide &one = component.side[0], &other = component.side[1];
-          VKMESH_LANES(l) {
+          VKMESH_FOR_LANES(l, kLanes) {
             const bool is_one = on_first[l] != 0;
             const float at_a = is_one ? one.ring[a][l] : other.ring[a][l],
                         at_b = is_one ? one.ring[b][l] : other.ring[b][l],
@@ -423,7 +414,7 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
         const bool last_is_side = a == 0 && c + 1 == n;
         const Lanes &heir_a = attributes.receiver[a][0], &heir_b = attributes.receiver[b][0],
                     &heir_c = attributes.receiver[c][0];
-        VKMESH_LANES(l) {
+        VKMESH_FOR_LANES(l, kLanes) {
           const float x1 = batch.left[ab][l], x2 = batch.left[bc][l], x3 = -batch.left[ac][l];
           const bool holds = (x1 >= 0) & (x2 >= 0) & ((x3 > 0) | (last_is_side & (x3 >= 0)));
           const float taken = (x2 * heir_a[l] + x3 * heir_b[l] + x1 * heir_c[l]) / whole[l];
@@ -440,7 +431,7 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
     for (std::size_t a = 0; a < c; ++a) {
       const std::size_t ac = pair(a, c);
       const bool is_root = a == 0 && c + 1 == n;
-      VKMESH_LANES(l) {
+      VKMESH_FOR_LANES(l, kLanes) {
         const bool is_new = !(is_root & (batch.closed[l] > 0));
         const float x = batch.left[ac][l];
         const float crossed = x > 0 ? attributes.inside[ac][l] : x < 0 ? attributes.outside[ac][l] : 0.0f;
@@ -474,7 +465,7 @@ template <std::size_t kCount, bool kAreFirst>
 [[gnu::always_inline]] inline void choose(RetriangulationBatch& batch, Work& w, std::size_t a, std::size_t c,
                                           std::size_t from) {
   const std::size_t ac = pair(a, c);
-  VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes) {
     float least = kNone, error = 0;
     auto third = static_cast<std::int32_t>(a + 1);
     if constexpr (!kAreFirst) {
@@ -520,7 +511,7 @@ void choose_all(RetriangulationBatch& batch, Work& w, const RetriangulationAttri
       for (b += 4; b + 1 < c; b += 2) choose<2, false>(batch, w, a, c, b);
       if (b < c) choose<1, false>(batch, w, a, c, b);
       const bool is_root = ac == root;
-      VKMESH_LANES(l) {
+      VKMESH_FOR_LANES(l, kLanes) {
         // The last of a vertex within the surface is an edge that was there.
         const float is_new = (is_root & (batch.closed[l] > 0)) ? 0.0f : 1.0f;
         const float x = batch.left[ac][l];
@@ -530,7 +521,7 @@ void choose_all(RetriangulationBatch& batch, Work& w, const RetriangulationAttri
         w.error[ac][l] += crossed;
       }
     }
-  VKMESH_LANES(l) {
+  VKMESH_FOR_LANES(l, kLanes) {
     const float error = w.base[l] + w.error[root][l] + w.illegal[l];
     batch.error[l] = ((w.best[root][l] < kNone) & (error < kNone)) ? error : kNone;
   }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "simd/lanes.h"
+
 namespace vkmesh::detail {
 
 /// The neighbours of vertices v and the triangles that may take the place of those at v: one vertex a lane,
@@ -39,7 +41,7 @@ struct RetriangulationBatch {
   static constexpr std::size_t kLanes = 16;
   static constexpr std::size_t kMaxNeighbours = 16;
   static constexpr std::size_t kPairs = kMaxNeighbours * (kMaxNeighbours - 1) / 2;
-  using Lanes = std::array<float, kLanes>;
+  using Lanes = FloatLanes<kLanes>;
 
   /// Of neighbours a < b.
   [[nodiscard]] static constexpr std::size_t pair(std::size_t a, std::size_t b) {

@@ -11,34 +11,17 @@ namespace {
 constexpr std::uint32_t kMaxNeighbours = CoarsenBatch::kMaxNeighbours;
 
 // The first words of the neighbours' records, and what their quadrics say at their own places.
-#if defined(VKMESH_HAS_CLONES)
-__attribute__((target("avx2"))) void gather_neighbours(const VertexRecord* vertices, CoarsenBatch& batch) {
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    CoarsenBatch::Around& around = batch.around[i];
-    std::array<const void*, 8> rows;
-    for (std::size_t k = 0; k < 8; ++k) {
-      const VertexRecord& neighbour = vertices[batch.ring[i].vertex[k]];
-      rows[k] = &neighbour;
-      around.c[k] = neighbour.quadric.c;
-    }
-    turn_eight(rows, {around.words[0].data(), around.words[1].data(), around.words[2].data(),
-                      around.words[3].data()});
-  }
-}
-
-__attribute__((target("default")))
-#endif
 void gather_neighbours(const VertexRecord* vertices, CoarsenBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     CoarsenBatch::Around& around = batch.around[i];
     for (std::size_t k = 0; k < CoarsenBatch::kMaxNeighbours; k += 4) {
-      std::array<const void*, 4> rows;
+      std::array<const void*, 4> records;
       for (std::size_t j = 0; j < 4; ++j) {
         const VertexRecord& neighbour = vertices[batch.ring[i].vertex[k + j]];
-        rows[j] = &neighbour;
+        records[j] = &neighbour;
         around.c[k + j] = neighbour.quadric.c;
       }
-      turn_four(rows, {&around.words[0][k], &around.words[1][k], &around.words[2][k], &around.words[3][k]});
+      transpose_records<4>(records, [&](std::size_t word) { return &around.words[word][k]; });
     }
   }
 }

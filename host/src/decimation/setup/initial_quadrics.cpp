@@ -25,8 +25,8 @@ static_assert(offsetof(VertexRecord, weight) == 16 && offsetof(VertexRecord, qua
 
 [[gnu::always_inline]] inline void add_words(VertexRecord& v, const PlaneWords& words) {
   char* const to = reinterpret_cast<char*>(&v) + offsetof(VertexRecord, weight);
-  add_four(words.data(), to);
-  add_four(words.data() + 4, to + 16);
+  add_4(words.data(), to);
+  add_4(words.data() + 4, to + 16);
 }
 
 /// Some faces, one a lane: their corners, and the planes in which they lie.
@@ -74,16 +74,16 @@ void add_faces(CollapseMesh& mesh, const VertexRanges::Range& range) {
         }
         for (std::size_t corner = 0; corner < 3; ++corner) {
           auto& to = batch.corner[corner];
-          turn_four(rows[corner], {&to[0][i], &to[1][i], &to[2][i], &to[3][i]});
+          transpose_4x4(rows[corner], {&to[0][i], &to[1][i], &to[2][i], &to[3][i]});
         }
       }
       find_planes(batch);
       for (std::uint32_t i = 0; i < count; i += 4)
         for (std::size_t half = 0; half < 8; half += 4)
-          turn_four({&batch.words[half][i], &batch.words[half + 1][i], &batch.words[half + 2][i],
-                     &batch.words[half + 3][i]},
-                    {&batch.planes[i][half], &batch.planes[i + 1][half], &batch.planes[i + 2][half],
-                     &batch.planes[i + 3][half]});
+          transpose_4x4({&batch.words[half][i], &batch.words[half + 1][i], &batch.words[half + 2][i],
+                         &batch.words[half + 3][i]},
+                        {&batch.planes[i][half], &batch.planes[i + 1][half], &batch.planes[i + 2][half],
+                         &batch.planes[i + 3][half]});
       for (std::uint32_t i = 0; i < count; ++i)
         for (const std::uint32_t v : mesh.face(4 * (first + i)).origin)
           if (range.has(v)) add_words(vertices[v], batch.planes[i]);
