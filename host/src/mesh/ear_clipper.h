@@ -1,9 +1,12 @@
 // Cutting polygons into triangles.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,12 +16,116 @@
 
 namespace vkmesh::detail {
 
+/// Corners of a polygon that may lie inside its ears, in a kd-tree (J. L. Bentley, "Multidimensional binary
+/// search trees used for associative searching", 1975). Nodes without any are passed over.
+class BlockTree {
+ public:
+  struct Point2 {
+    double x, y;
+    friend bool operator==(const Point2&, const Point2&) = default;
+  };
+
+  /// Those of the points where `blocks` is not 0. O(n log n).
+  void build(const std::vector<Point2>& points, const std::vector<char>& blocks) {
+    order_.resize(points.size());
+    place_.resize(points.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    leaves_ = 1;
+    while (leaves_ * kLeaf < points.size()) leaves_ *= 2;
+    nodes_.assign(2 * leaves_, Node{});
+    split(points, 1, 0, points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+      if (blocks[i]) change(i, 1);
+  }
+
+  void add(std::uint32_t point) { change(point, 1); }
+  void remove(std::uint32_t point) { change(point, -1); }
+
+  /// Whether hits(point) holds for any of those in a box around a triangle whose corners run
+  /// counter-clockwise.
+  template <class Hits>
+  bool any(const Point2& a, const Point2& b, const Point2& c, const std::vector<char>& blocks,
+           Hits&& hits) const {
+    std::array<std::uint32_t, 64> open;
+    std::size_t count = 0;
+    open[count++] = 1;
+    while (count > 0) {
+      const std::uint32_t at = open[--count];
+      const Node& node = nodes_[at];
+      if (node.count == 0 || lies_beyond(node, a, b) || lies_beyond(node, b, c) || lies_beyond(node, c, a))
+        continue;
+      if (at < leaves_) {
+        open[count++] = 2 * at;
+        open[count++] = 2 * at + 1;
+        continue;
+      }
+      for (std::uint32_t i = node.first; i < node.last; ++i)
+        if (blocks[order_[i]] && hits(order_[i])) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kLeaf = 8;
+  struct Node {
+    Point2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    std::uint32_t first = 0, last = 0;  ///< Of a leaf: its points in order_.
+    std::int32_t count = 0;             ///< Corners that block below it.
+  };
+
+  /// Whether the whole box is right of the line from p to q. Rounding may only make it say no: what it passes
+  /// over, the exact same sum for each point would pass over, too, or the margin of its terms decides.
+  static bool lies_beyond(const Node& node, const Point2& p, const Point2& q) {
+    const double dx = q.x - p.x, dy = q.y - p.y;
+    const double x = dy > 0 ? node.low.x : node.high.x, y = dx > 0 ? node.high.y : node.low.y;
+    const double left = dx * (y - p.y), right = dy * (x - p.x);
+    return left - right < -1e-12 * (std::abs(left) + std::abs(right));
+  }
+
+  void split(const std::vector<Point2>& points, std::uint32_t at, std::size_t first, std::size_t last) {
+    Node& node = nodes_[at];
+    node.first = static_cast<std::uint32_t>(first);
+    node.last = static_cast<std::uint32_t>(last);
+    for (std::size_t i = first; i < last; ++i) {
+      const Point2& p = points[order_[i]];
+      node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y)};
+      node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y)};
+    }
+    if (at >= leaves_) {
+      for (std::size_t i = first; i < last; ++i) place_[order_[i]] = at;
+      return;
+    }
+    const bool by_x = node.high.x - node.low.x > node.high.y - node.low.y;
+    const std::size_t middle = first + (last - first) / 2;
+    const auto begin = order_.begin();
+    std::nth_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
+                     begin + static_cast<std::ptrdiff_t>(last), [&](std::uint32_t i, std::uint32_t j) {
+                       const double u = by_x ? points[i].x : points[i].y,
+                                    v = by_x ? points[j].x : points[j].y;
+                       return u < v || (u == v && i < j);
+                     });
+    split(points, 2 * at, first, middle);
+    split(points, 2 * at + 1, middle, last);
+  }
+
+  void change(std::uint32_t point, std::int32_t by) {
+    for (std::uint32_t at = place_[point]; at > 0; at /= 2) nodes_[at].count += by;
+  }
+
+  std::vector<std::uint32_t> order_, place_;  ///< place_: the leaf of each point.
+  std::vector<Node> nodes_;                   ///< The children of node i are 2i and 2i + 1.
+  std::size_t leaves_ = 1;
+};
+
 /// Ear clipping, see triangulate(). Cuts one polygon after another; keeps its arrays between them.
 class EarClipper {
  public:
-  /// Calls emit(i, j, k) with places within `corners`, corners.size() - 2 times.
-  template <class Emit>
-  void clip(std::span<const Vec3> points, std::span<const std::uint32_t> corners, Emit&& emit) {
+  /// Calls emit(i, j, k) with places within `corners`, corners.size() - 2 times. Which triangles they are
+  /// does not depend on the corner that comes first. Diagonals between points for which taken(a, b) holds are
+  /// avoided, at the cost of triangles that are turned where there is no other way.
+  template <class Emit, class Taken>
+  void clip(std::span<const Vec3> points, std::span<const std::uint32_t> corners, Emit&& emit,
+            Taken&& taken) {
     project(points, corners);
     const auto n = static_cast<std::uint32_t>(corners.size());
     next_.resize(n);
@@ -30,32 +137,61 @@ class EarClipper {
     blocks_.resize(n);
     for (std::uint32_t i = 0; i < n; ++i) blocks_[i] = area(i) <= 0;
     proper_.resize(n);
+    uses_tree_ = n > kSmall;
+    if (uses_tree_) tree_.build(flat_, blocks_);
     judge_all(0);
 
-    std::uint32_t at = 1, left = n;
+    const auto is_taken = [&](std::uint32_t ear) {
+      return taken(corners[previous_[ear]], corners[next_[ear]]);
+    };
+    std::uint32_t at = next_[lowest_corner(corners)], left = n;
     for (; left > 3; --left) {
-      const std::uint32_t ear = find_ear(at, left);
+      const std::uint32_t ear = find_ear(at, left, is_taken);
       if (ear == kInvalid) break;
       const std::uint32_t before = previous_[ear], after = next_[ear];
       emit(before, ear, after);
+      unblock(ear);
       next_[before] = after;
       previous_[after] = before;
       at = after;
       // Only the neighbours of an ear change: every other diagonal stays as it was.
-      blocks_[before] = area(before) <= 0;
-      blocks_[after] = area(after) <= 0;
+      for (const std::uint32_t i : {before, after})
+        if (area(i) > 0)
+          unblock(i);
+        else
+          block(i);
       proper_[before] = is_ear(before, Ear::kProper);
       proper_[after] = is_ear(after, Ear::kProper);
     }
     const std::uint32_t hub = previous_[at];
     for (; left > 2; --left, at = next_[at]) emit(hub, at, next_[at]);
   }
+  template <class Emit>
+  void clip(std::span<const Vec3> points, std::span<const std::uint32_t> corners, Emit&& emit) {
+    clip(points, corners, emit, [](std::uint32_t, std::uint32_t) { return false; });
+  }
 
  private:
-  struct Point2 {
-    double x, y;
-    friend bool operator==(const Point2&, const Point2&) = default;
-  };
+  using Point2 = BlockTree::Point2;
+  static constexpr std::uint32_t kSmall = 48;  ///< Corners up to which a look at each is the fastest.
+
+  /// The corner with the lowest point or, of several, with the lowest one behind it.
+  static std::uint32_t lowest_corner(std::span<const std::uint32_t> corners) {
+    const auto after = [&](std::size_t i) { return corners[i + 1 == corners.size() ? 0 : i + 1]; };
+    std::size_t lowest = 0;
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      if (std::pair(corners[i], after(i)) < std::pair(corners[lowest], after(lowest))) lowest = i;
+    return static_cast<std::uint32_t>(lowest);
+  }
+
+  void unblock(std::uint32_t i) {
+    if (blocks_[i] && uses_tree_) tree_.remove(i);
+    blocks_[i] = 0;
+  }
+  void block(std::uint32_t i) {
+    if (!blocks_[i] && uses_tree_) tree_.add(i);
+    blocks_[i] = 1;
+  }
 
   /// Twice the signed area of a triangle: positive when a, b, c run counter-clockwise.
   static double area2(const Point2& a, const Point2& b, const Point2& c) {
@@ -89,18 +225,36 @@ class EarClipper {
 
   /// What a corner must be to be cut, the best first. A simple polygon always has a proper ear, and what is
   /// cut then has area; the others serve polygons that touch or cross themselves.
-  enum class Ear { kProper, kFlat, kTouched };
+  enum class Ear { kProper, kFlat, kTouched, kAny };
 
-  /// The first ear at or after `start`, or kInvalid.
-  std::uint32_t find_ear(std::uint32_t start, std::uint32_t left) {
+  /// The first ear at or after `start`, or kInvalid: one whose diagonal is not taken, whatever its kind,
+  /// before those whose is.
+  template <class Taken>
+  std::uint32_t find_ear(std::uint32_t start, std::uint32_t left, Taken&& taken) {
     std::uint32_t i = start;
-    for (std::uint32_t tried = 0; tried < left; ++tried, i = next_[i])
-      if (proper_[i]) return i;
-    judge_all(start);
+    bool any_taken = false;
+    for (std::uint32_t tried = 0; tried < left; ++tried, i = next_[i]) {
+      if (!proper_[i]) continue;
+      if (!taken(i)) return i;
+      any_taken = true;
+    }
+    if (!any_taken) judge_all(start);
+    for (const Ear kind : {Ear::kProper, Ear::kFlat, Ear::kTouched, Ear::kAny}) {
+      if (kind == Ear::kAny && !any_taken) break;
+      for (std::uint32_t tried = 0; tried < left; ++tried, i = next_[i])
+        if (is_of(i, kind)) {
+          if (!taken(i)) return i;
+          any_taken = true;
+        }
+    }
     for (const Ear kind : {Ear::kProper, Ear::kFlat, Ear::kTouched})
       for (std::uint32_t tried = 0; tried < left; ++tried, i = next_[i])
-        if (kind == Ear::kProper ? proper_[i] != 0 : is_ear(i, kind)) return i;
+        if (is_of(i, kind)) return i;
     return kInvalid;
+  }
+
+  bool is_of(std::uint32_t i, Ear kind) const {
+    return kind == Ear::kAny || (kind == Ear::kProper ? proper_[i] != 0 : is_ear(i, kind));
   }
 
   void judge_all(std::uint32_t start) {
@@ -116,14 +270,17 @@ class EarClipper {
     if (blocks_[i]) return false;
     const std::uint32_t before = previous_[i], after = next_[i];
     const Point2 a = flat_[before], b = flat_[i], c = flat_[after];
-    for (std::uint32_t j = next_[after]; j != before; j = next_[j]) {
-      if (!blocks_[j]) continue;
+    const auto is_inside = [&](std::uint32_t j) {
       const Point2 p = flat_[j];
       const double ab = area2(a, b, p), bc = area2(b, c, p), ca = area2(c, a, p);
-      if (kind == Ear::kTouched ? (ab > 0 && bc > 0 && ca > 0)
-                                : (ab >= 0 && bc >= 0 && ca >= 0 && !(p == a) && !(p == b) && !(p == c)))
-        return false;
-    }
+      return kind == Ear::kTouched ? (ab > 0 && bc > 0 && ca > 0)
+                                   : (ab >= 0 && bc >= 0 && ca >= 0 && !(p == a) && !(p == b) && !(p == c));
+    };
+    if (uses_tree_)
+      return !tree_.any(a, b, c, blocks_,
+                        [&](std::uint32_t j) { return j != before && j != after && is_inside(j); });
+    for (std::uint32_t j = next_[after]; j != before; j = next_[j])
+      if (blocks_[j] && is_inside(j)) return false;
     return true;
   }
 
@@ -131,6 +288,8 @@ class EarClipper {
   std::vector<std::uint32_t> next_, previous_;
   std::vector<char> blocks_;  ///< Corners that are not convex: only they can lie inside an ear.
   std::vector<char> proper_;  ///< Corners that are proper ears.
+  BlockTree tree_;            ///< Of those that block, in large polygons.
+  bool uses_tree_ = false;
 };
 
 }  // namespace vkmesh::detail
