@@ -40,8 +40,8 @@ Result<void> run(Job& job, const CompareOptions& options) {
   use_host(job);
   VKMESH_TRY(const IndexedFaceSet first, job.read());
   VKMESH_TRY(const IndexedFaceSet second, job.timed("read", [&]() -> Result<IndexedFaceSet> {
-    VKMESH_TRY(MeshFile file, read_mesh(options.other, {job.progress("reading")}));
-    for (std::string& sentence : file.notes) job.note(options.other + ": " + sentence);
+    VKMESH_TRY(MeshFile file, read_mesh(options.other, job.read_options()));
+    VKMESH_CHECK(job.note_differences(options.other, file.notes));
     return to_indexed_face_set(std::move(file));
   }));
   job.row("second", options.other + "  (" + count_of(second.points.size(), "point") + ", " +

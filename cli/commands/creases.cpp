@@ -55,7 +55,8 @@ Result<void> run(Job& job, CreaseOptions options, const Degrees& degrees) {
   job.row("creases", count_of(creases.size(), "chain") + ", " + count_of(loops, "loop") + " among them, of " +
                          count_of(edges, "edge") + ", length " + brief(length));
   if (job.options().output.empty()) return {};
-  return job.timed("write", [&] { return write_polylines(job.options().output, mesh.points, polylines); });
+  return job.timed(
+      "write", [&] { return write_polylines(job.options().output, mesh.points, polylines, job.offset()); });
 }
 
 }  // namespace

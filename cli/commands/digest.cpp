@@ -131,7 +131,9 @@ const std::vector<Pass>& passes() {
 }
 
 Result<Input> read_triangles(Job& job, const std::string& file) {
-  VKMESH_TRY(MeshFile read, job.timed("read", [&] { return read_mesh(file, {job.progress("reading")}); }));
+  VKMESH_TRY(MeshFile read, job.timed("read", [&] {
+    return read_mesh(file, ReadOptions{job.progress("reading"), DVec3(0.0), true});
+  }));
   return job.timed("consolidate", [&]() -> Result<Input> {
     VKMESH_TRY(const IndexedFaceSet polygons, to_indexed_face_set(std::move(read)));
     VKMESH_TRY(Triangulated cut, triangulate(polygons));

@@ -501,9 +501,10 @@ Result<std::vector<Subject>> read_subjects(Job& job, const RenderOptions& option
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     // A file that is shown several times is read once.
     if (!files.contains(inputs[i])) {
-      VKMESH_TRY(MeshFile read,
-                 job.timed("read", [&] { return read_mesh(inputs[i], {job.progress("reading")}); }));
-      for (const std::string& sentence : read.notes) job.note(inputs[i] + ": " + sentence);
+      VKMESH_TRY(MeshFile read, job.timed("read", [&] {
+        return read_mesh(inputs[i], ReadOptions{job.progress("reading"), DVec3(0.0), true});
+      }));
+      VKMESH_CHECK(job.note_differences(inputs[i], read.notes));
       files.emplace(inputs[i], std::move(read));
     }
     const bool again = std::find(inputs.begin() + static_cast<std::ptrdiff_t>(i) + 1, inputs.end(),

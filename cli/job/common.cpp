@@ -167,7 +167,8 @@ Job::Job(std::string command, CommonOptions options)
              {"report", nullptr},
              {"timings_ms", Json::object()},
              {"result", Json::object()},
-             {"notes", Json::array()}}),
+             {"notes", Json::array()},
+             {"losses", Json::array()}}),
       progress_(options_.progress == "always" ||
                 (options_.progress == "auto" && !options_.quiet && isatty(STDERR_FILENO) != 0)) {
   for (const char* name : kTimings) json_["timings_ms"][name] = nullptr;
@@ -180,16 +181,34 @@ void Job::book(const char* name, double ms) {
 
 Result<IndexedFaceSet> Job::read() {
   return timed("read", [&]() -> Result<IndexedFaceSet> {
-    VKMESH_TRY(MeshFile file, read_mesh(options_.input, {progress("reading")}));
+    VKMESH_TRY(MeshFile file, read_mesh(options_.input, read_options()));
+    has_read_ = true;
+    offset_ = file.offset;
+    material_libraries_ = file.material_libraries;
     const FileFormat format = file.format;
     const FileEncoding encoding = file.encoding;
     const bool gzip = file.gzip;
-    for (std::string& sentence : file.notes) note(options_.input + ": " + sentence);
+    VKMESH_CHECK(note_differences(options_.input, file.notes));
     VKMESH_TRY(IndexedFaceSet mesh, to_indexed_face_set(std::move(file)));
     json_["input"] = counts_of(mesh, options_.input, format, encoding, gzip);
     row("input", file_row(mesh, options_.input, format, encoding, gzip));
     return mesh;
   });
+}
+
+ReadOptions Job::read_options() {
+  return {progress("reading"), offset_, !has_read_};
+}
+
+Result<void> Job::note_differences(const std::string& file, const std::vector<FileNote>& notes) {
+  for (const FileNote& difference : notes) {
+    json_["losses"].push_back({{"file", file}, {"code", difference.code}, {"sentence", difference.sentence}});
+    if (difference.is_loss() && options_.on_loss == "fail")
+      return fail(ErrorCode::kUnsuitable,
+                  difference.sentence + " (" + difference.code + "; --on-loss note goes on)", {file, {}, {}});
+    if (!difference.is_loss() || options_.on_loss == "note") note(file + ": " + difference.sentence);
+  }
+  return {};
 }
 
 Result<void> Job::check_output() {
@@ -231,21 +250,45 @@ Result<HalfEdgeMesh> Job::consolidate_triangles(IndexedFaceSet& mesh) {
   VKMESH_TRY(HalfEdgeMesh half_edges, consolidate(mesh));
   if (mesh.is_triangles()) return half_edges;
   return timed("consolidate", [&]() -> Result<HalfEdgeMesh> {
-    VKMESH_TRY(const Triangulated cut, triangulate(mesh));
+    VKMESH_TRY(Triangulated cut, triangulate(mesh));
     auto triangles = to_half_edge_mesh(cut.mesh);
-    if (!triangles) {
-      triangles.error().where.file = options_.input;
-      triangles.error().message = "cut into triangles, the polygons are " + triangles.error().message;
-    }
-    return triangles;
+    if (triangles) return triangles;
+    mesh = std::move(cut.mesh);
+    note("the polygons share diagonals, so that they were cut into triangles and those mended");
+    return consolidate_again(mesh);
   });
+}
+
+Result<HalfEdgeMesh> Job::consolidate_again(IndexedFaceSet& triangles) {
+  auto sound = to_half_edge_mesh(triangles);
+  if (sound) return sound;
+  ConsolidateOptions mending = options_.consolidation;
+  mending.weld.reset();
+  auto result = vkmesh::consolidate(std::move(triangles), mending, progress("consolidating"));
+  if (!result) {
+    result.error().where.file = options_.input;
+    result.error().message = "cut into triangles, the polygons are " + result.error().message;
+    return tl::unexpected<Error>(std::move(result.error()));
+  }
+  for (std::string& sentence : result->report.repairs()) row("mended", "triangles: " + sentence);
+  triangles = std::move(result->face_set);
+  return std::move(result->mesh);
 }
 
 Result<void> Job::write(const IndexedFaceSet& mesh, bool ascii) {
   if (ascii) write_options_.encoding = FileEncoding::kAscii;
-  VKMESH_TRY(const std::vector<std::string> left_out,
+  write_options_.offset = offset_;
+  write_options_.material_libraries = material_libraries_;
+  if (options_.on_loss == "fail") {
+    // Nothing is written where something would be lost.
+    VKMESH_CHECK(timed("write", [&]() -> Result<void> {
+      VKMESH_TRY(const std::vector<FileNote> losses, losses_of(mesh, write_options_));
+      return note_differences(options_.output, losses);
+    }));
+  }
+  VKMESH_TRY(const std::vector<FileNote> differences,
              timed("write", [&] { return write_mesh(options_.output, mesh, write_options_); }));
-  for (const std::string& sentence : left_out) note(options_.output + ": " + sentence);
+  VKMESH_CHECK(note_differences(options_.output, differences));
   const auto& w = write_options_;
   json_["output"] = counts_of(mesh, options_.output, w.format, w.encoding, w.gzip);
   row("output", file_row(mesh, options_.output, w.format, w.encoding, w.gzip));
@@ -283,15 +326,15 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
   if (has_input)
     command
         .add_option("IN", options.input,
-                    "Mesh to read: PLY, OBJ, OFF, STL, glTF (.gltf, .glb), OpenInventor or VRML, also\n"
-                    "gzipped; - for standard input")
+                    "Mesh to read: PLY, OBJ, OFF, STL, glTF (.gltf, .glb), OpenInventor, VRML or XYZ,\n"
+                    "also gzipped; - for standard input")
         ->type_name("")
         ->required();
   if (has_output)
     command
         .add_option("OUT", options.output,
-                    "Mesh to write: .ply, .obj, .off, .stl, .gltf, .glb, .iv, .wrl (VRML 2), .vrml1, also\n"
-                    "with .gz; - for a PLY on standard output")
+                    "Mesh to write: .ply, .obj, .off, .stl, .gltf, .glb, .iv, .wrl (VRML 2), .vrml1, .xyz,\n"
+                    "also with .gz; - for a PLY on standard output")
         ->type_name("")
         ->required();
   command
@@ -306,6 +349,13 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
       ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
   command.add_flag("--json", options.json,
                    "Print one JSON object on standard output, and nothing else there");
+  if (has_input)
+    command
+        .add_option("--on-loss", options.on_loss,
+                    "What a file holds and is not passed on is noted (note, default), passed over in\n"
+                    "silence (ignore), or ends the run before anything is written (fail; exit code 4)")
+        ->type_name("WHAT")
+        ->check(CLI::IsMember({"ignore", "note", "fail"}).description(""));
   command.add_flag("--quiet", options.quiet, "Print nothing but errors");
 }
 

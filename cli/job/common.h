@@ -31,6 +31,7 @@ struct CommonOptions {
   std::string progress = "auto";
   bool json = false;
   bool quiet = false;
+  std::string on_loss = "note";
   ConsolidateOptions consolidation;
 };
 
@@ -90,13 +91,23 @@ class Job {
   /// Makes the mesh an oriented manifold, as the options of add_consolidate_options() say, and reports what
   /// was done. The half-edges are those of its faces.
   [[nodiscard]] Result<HalfEdgeMesh> consolidate(IndexedFaceSet& mesh);
-  /// The same, with the half-edges of the triangles into which polygons are cut; `mesh` keeps its polygons.
+  /// The same, with the half-edges of the triangles into which polygons are cut; `mesh` keeps its polygons,
+  /// unless their triangles need mending: then it becomes those.
   [[nodiscard]] Result<HalfEdgeMesh> consolidate_triangles(IndexedFaceSet& mesh);
+  /// Mends what cutting polygons left that is no oriented manifold; what was done is told beside the report.
+  [[nodiscard]] Result<HalfEdgeMesh> consolidate_again(IndexedFaceSet& triangles);
   /// Writes the output, and reports its counts.
   [[nodiscard]] Result<void> write(const IndexedFaceSet& mesh, bool ascii = false);
 
   /// A sentence about something that was left out or not used.
   void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
+  /// Tells of the differences between a file and its mesh, as --on-loss says. Errors: kUnsuitable where it
+  /// says that a loss fails the run.
+  [[nodiscard]] Result<void> note_differences(const std::string& file, const std::vector<FileNote>& notes);
+  /// What is to be added to the points of what was read.
+  [[nodiscard]] const DVec3& offset() const { return offset_; }
+  /// How all files of the run are read: relative to the first's offset.
+  [[nodiscard]] ReadOptions read_options();
   /// A line of the table.
   void row(std::string label, std::string value) { rows_.emplace_back(std::move(label), std::move(value)); }
   /// The object that --json prints. Subcommands fill "device", "report" and "result".
@@ -117,6 +128,9 @@ class Job {
   CommonOptions options_;
   Clock::time_point start_ = Clock::now();
   WriteOptions write_options_;
+  DVec3 offset_{0.0};
+  std::vector<std::string> material_libraries_;
+  bool has_read_ = false;  ///< The offset is settled.
   std::vector<std::pair<std::string, std::string>> rows_;
   std::vector<std::string> notes_;
   Json json_;

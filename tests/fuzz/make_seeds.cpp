@@ -112,7 +112,7 @@ bool write_seeds(const std::filesystem::path& folder) {
     const auto bytes = bytes_of(seed.mesh);
     std::filesystem::create_directories(folder / "consolidate");
     written = write(folder / "consolidate" / seed.name, bytes.data(), bytes.size()) && written;
-    for (const char* extension : {"ply", "obj", "off", "stl", "iv", "vrml1", "wrl", "gltf", "glb"}) {
+    for (const char* extension : {"ply", "obj", "off", "stl", "iv", "vrml1", "wrl", "gltf", "glb", "xyz"}) {
       auto options = write_options_for(std::string("seed.") + extension);
       if (!options) return false;
       std::filesystem::create_directories(folder / extension);
@@ -122,7 +122,7 @@ bool write_seeds(const std::filesystem::path& folder) {
         if (!chosen && encoding != options->encoding) continue;  // The extension says which.
         options->encoding = encoding;
         const auto encoded = encode_mesh(seed.mesh, *options);
-        if (!encoded) continue;  // Polygons into STL, which also has no big-endian form.
+        if (!encoded) continue;  // Polygons into STL, which also has no big-endian form; faces into XYZ.
         const auto path = folder / extension / (seed.name + "-" + name_of(encoding));
         written = write(path, encoded->data(), encoded->size()) && written;
       }

@@ -297,7 +297,9 @@ Result<void> run(Job& job, const BenchOptions& options) {
   VKMESH_TRY(const std::unique_ptr<BenchPlace> place, open_place(job));
   Bench bench(job, *place, options);
   for (const std::string& file : options.files) {
-    VKMESH_TRY(MeshFile read, job.timed("read", [&] { return read_mesh(file, {job.progress("reading")}); }));
+    VKMESH_TRY(MeshFile read, job.timed("read", [&] {
+      return read_mesh(file, ReadOptions{job.progress("reading"), DVec3(0.0), true});
+    }));
     VKMESH_TRY(BenchSubject subject, job.timed("consolidate", [&]() -> Result<BenchSubject> {
       VKMESH_TRY(const IndexedFaceSet polygons, to_indexed_face_set(std::move(read)));
       VKMESH_TRY(Triangulated cut, triangulate(polygons));

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -45,11 +47,127 @@ Result<void> Source::tick(const char* at) const {
 Channel color_channel(std::vector<float> values, unsigned components, bool whole_numbers) {
   const bool bytes =
       whole_numbers && std::any_of(values.begin(), values.end(), [](float v) { return v > 1; });
-  if (!bytes) return {"color", components, std::move(values)};
+  Channel channel{"color", components, std::move(values)};
+  if (!bytes) {
+    to_canonical_color(channel);
+    return channel;
+  }
   std::vector<std::uint8_t> rounded;
-  rounded.reserve(values.size());
-  for (const float v : values) rounded.push_back(static_cast<std::uint8_t>(v));
-  return {"color", components, std::move(rounded)};
+  rounded.reserve(channel.scalar_count());
+  for (const float v : std::get<std::vector<float>>(channel.values))
+    rounded.push_back(static_cast<std::uint8_t>(v));
+  channel.values = std::move(rounded);
+  return channel;
+}
+
+bool to_canonical_color(Channel& channel) {
+  return std::visit(
+      [&](const auto& given) {
+        using T = typename std::decay_t<decltype(given)>::value_type;
+        if constexpr (std::is_same_v<T, std::uint8_t>) {
+          return false;
+        } else {
+          double largest = 0;
+          for (const T v : given)
+            if (std::isfinite(static_cast<double>(v))) largest = std::max(largest, static_cast<double>(v));
+          if constexpr (std::is_integral_v<T>) {
+            if (sizeof(T) > 1 && largest <= 255) {
+              std::vector<std::uint8_t> bytes;
+              bytes.reserve(given.size());
+              for (const T v : given) bytes.push_back(static_cast<std::uint8_t>(v < 0 ? T{0} : v));
+              channel.values = std::move(bytes);
+              return true;
+            }
+          } else if (largest <= 1) {
+            return false;
+          }
+          const double one = std::is_integral_v<T> ? static_cast<double>(std::numeric_limits<T>::max())
+                             : largest <= 255      ? 255.0
+                                                   : 65535.0;
+          std::vector<float> fractions;
+          fractions.reserve(given.size());
+          for (const T v : given) fractions.push_back(static_cast<float>(static_cast<double>(v) / one));
+          channel.values = std::move(fractions);
+          return true;
+        }
+      },
+      channel.values);
+}
+
+void Positions::add(const Positions& other) {
+  for (int axis = 0; axis < 3; ++axis) {
+    low_[axis] = std::min(low_[axis], other.low_[axis]);
+    high_[axis] = std::max(high_[axis], other.high_[axis]);
+  }
+  error_ = std::max(error_, other.error_);
+}
+
+double Positions::size() const {
+  const DVec3 extent = high_ - low_;
+  return std::hypot(extent.x, extent.y, extent.z);
+}
+
+DVec3 Positions::better_offset() const {
+  const double size = this->size();
+  DVec3 offset(0.0);
+  // Also false where there is no point, and where the size is not finite.
+  if (!(size > 0 && size < HUGE_VAL) || error_ <= std::ldexp(size, -21)) return offset;
+  const double grid = std::ldexp(1.0, std::ilogb(size) + 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double middle = low_[axis] + (high_[axis] - low_[axis]) / 2;
+    if (std::abs(middle) > 4 * size) offset[axis] = std::round(middle / grid) * grid;
+  }
+  return offset;
+}
+
+void Positions::add_notes(Notes& notes) const {
+  const auto text = [](double x) {
+    char digits[32];
+    return std::string(digits, put_number(digits, x));
+  };
+  if (offset_ != DVec3(0.0))
+    notes.push_back({"offset.positions", "positions are kept relative to (" + text(offset_.x) + ", " +
+                                             text(offset_.y) + ", " + text(offset_.z) + ")"});
+  if (error_ > std::ldexp(size(), -22) && size() > 0)
+    notes.push_back(
+        {"rounded.positions", "positions rounded to single precision, by at most " + text(error_)});
+}
+
+void note_small_faces(Notes& notes, std::size_t count) {
+  if (count > 0)
+    notes.push_back({"skipped.small_faces", std::to_string(count) + (count == 1 ? " face" : " faces") +
+                                                " of fewer than three corners skipped"});
+}
+
+Result<void> NonFinitePoints::drop(const Source& source, bool binary, IndexedFaceSet& mesh, Notes& notes) {
+  if (points_.empty()) return {};
+  std::sort(points_.begin(), points_.end());
+  std::vector<bool> used(mesh.points.size());
+  for (const std::uint32_t c : mesh.corners) used[c] = true;
+  for (const auto& [point, at] : points_)
+    if (used[point]) {
+      std::string message = "vertex " + std::to_string(point) + " has a coordinate that is not finite";
+      return binary ? source.bad_byte(at, std::move(message)) : source.bad_line(at, std::move(message));
+    }
+  std::vector<std::uint32_t> kept, number(mesh.points.size());
+  kept.reserve(mesh.points.size() - points_.size());
+  auto next = points_.begin();
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    number[i] = static_cast<std::uint32_t>(kept.size());
+    if (next != points_.end() && next->first == i)
+      ++next;
+    else
+      kept.push_back(static_cast<std::uint32_t>(i));
+  }
+  for (std::size_t k = 0; k < kept.size(); ++k) mesh.points[k] = mesh.points[kept[k]];
+  mesh.points.resize(kept.size());
+  mesh.point_channels = gather(mesh.point_channels, kept);
+  for (std::uint32_t& c : mesh.corners) c = number[c];
+  notes.push_back({"dropped.nonfinite_points",
+                   std::to_string(points_.size()) +
+                       (points_.size() == 1 ? " point that is not finite and that no face uses dropped"
+                                            : " points that are not finite and that no face uses dropped")});
+  return {};
 }
 
 std::vector<std::string> comment_lines(const std::string& comment) {
@@ -66,7 +184,25 @@ std::vector<std::string> comment_lines(const std::string& comment) {
 }
 
 void note_left_out(Notes& notes, const char* element, const Channel& channel, const std::string& reason) {
-  notes.push_back(std::string(element) + " channel '" + channel.name + "' left out: " + reason);
+  notes.push_back({"dropped." + channel.name,
+                   std::string(element) + " channel '" + channel.name + "' left out: " + reason});
+}
+
+void note_labels_left_out(Notes& notes, const char* element, const Channel& channel) {
+  notes.push_back({"dropped.labels", "names that the numbers of " + std::string(element) + " channel '" +
+                                         channel.name + "' stand for left out"});
+}
+
+char* put_coordinate(char* to, float value, double offset) {
+  if (offset == 0) return put_number(to, value);
+  const double exact = static_cast<double>(value) + offset;
+  for (int digits = 1; digits <= 17; ++digits) {
+    char* const end = std::to_chars(to, to + 64, exact, std::chars_format::general, digits).ptr;
+    double back = 0;
+    std::from_chars(to, end, back);
+    if (static_cast<float>(back - offset) == value) return end;
+  }
+  return put_number(to, exact);
 }
 
 float channel_float(const Channel& channel, std::size_t i) {
@@ -100,7 +236,7 @@ constexpr KnownFormat kFormats[] = {
     {FileFormat::kPly, "ply"},     {FileFormat::kObj, "obj"},     {FileFormat::kOff, "off"},
     {FileFormat::kStl, "stl"},     {FileFormat::kGltf, "gltf"},   {FileFormat::kGltf, "glb"},
     {FileFormat::kInventor, "iv"}, {FileFormat::kVrml1, "vrml1"}, {FileFormat::kVrml2, "vrml2"},
-    {FileFormat::kVrml2, "wrl"},   {FileFormat::kVrml2, "vrml"}};
+    {FileFormat::kVrml2, "wrl"},   {FileFormat::kVrml2, "vrml"},  {FileFormat::kXyz, "xyz"}};
 
 /// What the name of a file says: its extension in lower case without the dot, and a .gz after it.
 struct NameHint {
@@ -140,7 +276,8 @@ bool is_obj_keyword(std::string_view word) {
 /// Inventor and VRML, which their first line tells apart.
 Result<MeshFile> parse_scene_file(const Source& source) {
   const std::string_view line = source.bytes.substr(0, source.bytes.find_first_of("\r\n"));
-  if (line.starts_with("#Inventor V2.") && line.find("ascii") != std::string_view::npos)
+  if ((line.starts_with("#Inventor V2.") || line.starts_with("#Inventor V1.")) &&
+      line.find("ascii") != std::string_view::npos)
     return parse_inventor(source, FileFormat::kInventor);
   if (line.starts_with("#VRML V1.0 ascii")) return parse_inventor(source, FileFormat::kVrml1);
   if (line.starts_with("#VRML V2.0 utf8")) return parse_vrml2(source);
@@ -148,10 +285,12 @@ Result<MeshFile> parse_scene_file(const Source& source) {
     return source.bad_line(line.data(),
                            "binary Inventor files are not read: write it as ascii, for example with ivcat");
   return source.bad_line(line.data(),
-                         "only Inventor 2 in ascii, VRML 1.0 in ascii and VRML 2.0 in utf8 are read");
+                         "only Inventor in ascii, VRML 1.0 in ascii and VRML 2.0 in utf8 are read");
 }
 
-Result<MeshFile> parse_content(const Source& source) {
+}  // namespace
+
+Result<MeshFile> parse_format(const Source& source) {
   const std::string_view bytes = source.bytes;
   if (bytes.empty()) return fail(ErrorCode::kUnreadable, "the file is empty", {source.name, {}, {}});
   // The magic number of PLY is its first line; a binary STL file of the right size is one whatever its header
@@ -166,7 +305,7 @@ Result<MeshFile> parse_content(const Source& source) {
   text.skip_to_content();
   const std::string_view word = text.word();
   const bool has_zeros = bytes.substr(0, 512).find('\0') != std::string_view::npos;
-  if (word.size() <= 7 && word.ends_with("OFF")) return parse_off(source);
+  if (off_keyword(word) > 0) return parse_off(source);
   if ((word == "solid" || word == "SOLID" || word == "Solid") && !has_zeros) return parse_stl_ascii(source);
 
   const auto named = format_named(hint_of(source.name).extension);
@@ -181,8 +320,68 @@ Result<MeshFile> parse_content(const Source& source) {
         bytes.data(), "an Inventor or VRML file begins with its name and version after a #, this one with " +
                           TextCursor(bytes).found());
   if (named == FileFormat::kObj || is_obj_keyword(word)) return parse_obj(source);
-  return fail(ErrorCode::kUnreadable, "the content is none of PLY, OBJ, OFF, STL, glTF, Inventor, VRML",
+  if (named == FileFormat::kXyz || (!has_zeros && is_xyz(bytes))) return parse_xyz(source);
+  return fail(ErrorCode::kUnreadable, "the content is none of PLY, OBJ, OFF, STL, glTF, Inventor, VRML, XYZ",
               {source.name, {}, {}});
+}
+
+namespace {
+
+/// Tells of values that are not finite in the attributes with a meaning, which no renderer can use.
+void note_not_finite(const std::vector<Channel>& channels, const char* elements, Notes& notes) {
+  for (const Channel& channel : channels) {
+    if (channel.name != "normal" && channel.name != "uv" && channel.name != "color") continue;
+    const std::size_t count = std::visit(
+        [](const auto& values) {
+          std::size_t found = 0;
+          for (const auto v : values) found += !std::isfinite(static_cast<double>(v));
+          return found;
+        },
+        channel.values);
+    if (count > 0)
+      notes.push_back({"nonfinite." + channel.name, std::to_string(count) + " values of '" + channel.name +
+                                                        "' of " + elements + " are not finite"});
+  }
+}
+
+/// What holds for every format: canonical colours, and notes on values that are not finite.
+void finish_channels(MeshFile& file) {
+  const auto finish = [&](std::vector<Channel>& channels, const char* elements) {
+    for (Channel& channel : channels)
+      if (channel.name == "color") to_canonical_color(channel);
+    note_not_finite(channels, elements, file.notes);
+  };
+  if (auto* mesh = std::get_if<IndexedFaceSet>(&file.geometry)) {
+    finish(mesh->point_channels, "points");
+    finish(mesh->corner_channels, "corners");
+    finish(mesh->face_channels, "faces");
+  } else {
+    finish(std::get<PolygonSoup>(file.geometry).face_channels, "faces");
+  }
+}
+
+Result<MeshFile> parse_content(Source source, const ReadOptions& options) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (source.bytes.starts_with(kByteOrderMark)) source.bytes.remove_prefix(kByteOrderMark.size());
+  source.offset = options.offset;
+  int inlines = 0;
+  source.inlines = &inlines;
+  Positions positions(source.offset);
+  source.positions = &positions;
+  VKMESH_TRY(MeshFile file, parse_format(source));
+  if (options.find_offset && options.offset == DVec3(0.0)) {
+    // Far from the origin, which few meshes are: they are read a second time, relative to a point near them.
+    const DVec3 offset = positions.better_offset();
+    if (offset != DVec3(0.0)) {
+      source.offset = offset;
+      positions = Positions(offset);
+      VKMESH_TRY(file, parse_format(source));
+    }
+  }
+  file.offset = source.offset;
+  finish_channels(file);
+  positions.add_notes(file.notes);
+  return file;
 }
 
 /// Refuses what no encoder could write: channels of the wrong size, indices and offsets that point nowhere.
@@ -213,6 +412,11 @@ Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& opti
   VKMESH_CHECK(check(mesh.point_channels, mesh.points.size()));
   VKMESH_CHECK(check(mesh.corner_channels, mesh.corners.size()));
   VKMESH_CHECK(check(mesh.face_channels, mesh.face_count()));
+  if (options.format == FileFormat::kStl && mesh.face_count() == 0 && !mesh.points.empty())
+    return fail(ErrorCode::kUnsuitable,
+                "STL holds triangles only: it cannot hold a point cloud, as PLY, OBJ, OFF and XYZ can");
+  if (options.format == FileFormat::kXyz && mesh.face_count() > 0)
+    return fail(ErrorCode::kUnsuitable, "XYZ holds points only, and the mesh has faces");
   const bool triangles_only = options.format == FileFormat::kStl || options.format == FileFormat::kGltf;
   const std::string format_name = options.format == FileFormat::kStl ? "STL" : "glTF";
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -230,8 +434,61 @@ Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& opti
   return {};
 }
 
-Result<Notes> encode(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out) {
+/// Whether encoders take the channel as it is: canonical colours; normals, uv and colours that are finite.
+bool is_encodable(const Channel& channel) {
+  if (channel.name != "normal" && channel.name != "uv" && channel.name != "color") return true;
+  return std::visit(
+      [&](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_integral_v<T>)
+          return channel.name != "color" || std::is_same_v<T, std::uint8_t>;
+        else
+          return std::all_of(values.begin(), values.end(),
+                             [&](T v) { return std::isfinite(v) && (channel.name != "color" || v <= 1); });
+      },
+      channel.values);
+}
+
+void make_encodable(std::vector<Channel>& channels, const char* element, Notes& notes) {
+  for (Channel& channel : channels) {
+    if (is_encodable(channel)) continue;
+    if (channel.name == "color") to_canonical_color(channel);
+    std::size_t count = 0;
+    std::visit(
+        [&](auto& values) {
+          for (auto& value : values)
+            if (!std::isfinite(static_cast<double>(value))) {
+              value = 0;
+              ++count;
+            }
+        },
+        channel.values);
+    if (count > 0)
+      notes.push_back({"replaced." + channel.name, std::to_string(count) + " values of " + element +
+                                                       " channel '" + channel.name +
+                                                       "' that are not finite written as 0"});
+  }
+}
+
+Result<Notes> encode(const IndexedFaceSet& given, const WriteOptions& options, Output& out) {
   Notes notes;
+  const auto encodable = [](const std::vector<Channel>& channels) {
+    return std::all_of(channels.begin(), channels.end(), is_encodable);
+  };
+  IndexedFaceSet changed;
+  const bool as_it_is =
+      encodable(given.point_channels) && encodable(given.corner_channels) && encodable(given.face_channels);
+  if (!as_it_is) {
+    changed = given;
+    make_encodable(changed.point_channels, "point", notes);
+    make_encodable(changed.corner_channels, "corner", notes);
+    make_encodable(changed.face_channels, "face", notes);
+  }
+  const IndexedFaceSet& mesh = as_it_is ? given : changed;
+  if (options.format != FileFormat::kObj && !options.material_libraries.empty())
+    notes.push_back({"dropped.material_libraries", std::to_string(options.material_libraries.size()) +
+                                                       " names of material libraries left out: " +
+                                                       name_of(options.format) + " holds none"});
   switch (options.format) {
     case FileFormat::kPly:
       encode_ply(mesh, options, out, notes);
@@ -244,6 +501,9 @@ Result<Notes> encode(const IndexedFaceSet& mesh, const WriteOptions& options, Ou
       break;
     case FileFormat::kStl:
       encode_stl(mesh, options, out, notes);
+      break;
+    case FileFormat::kXyz:
+      encode_xyz(mesh, options, out, notes);
       break;
     case FileFormat::kGltf:
       VKMESH_CHECK(encode_gltf(mesh, options, out, notes));
@@ -260,6 +520,10 @@ Result<Notes> encode(const IndexedFaceSet& mesh, const WriteOptions& options, Ou
 
 }  // namespace
 }  // namespace detail
+
+bool FileNote::is_loss() const {
+  return !code.starts_with("repaired.") && !code.starts_with("offset.");
+}
 
 std::string name_of(FileFormat format) {
   for (const detail::KnownFormat& known : detail::kFormats)
@@ -285,7 +549,8 @@ Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions&
     const std::string name = path == "-" ? "standard input" : path.string();
     const std::filesystem::path folder = path.parent_path();
     VKMESH_TRY(MeshFile file, detail::parse_content({content.bytes.view(), name, options.progress, 0.5,
-                                                     path == "-" ? nullptr : &folder}));
+                                                     path == "-" ? nullptr : &folder},
+                                                    options));
     file.gzip = content.gzip;
     return file;
   });
@@ -295,9 +560,9 @@ Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, const std::string&
                             const ReadOptions& options) {
   return detail::catching([&]() -> Result<MeshFile> {
     const std::string_view given(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (!detail::is_gzip(given)) return detail::parse_content({given, name, options.progress, 0});
+    if (!detail::is_gzip(given)) return detail::parse_content({given, name, options.progress, 0}, options);
     VKMESH_TRY(const detail::ByteBuffer inflated, detail::inflate_bytes(given, name));
-    VKMESH_TRY(MeshFile file, detail::parse_content({inflated.view(), name, options.progress, 0.5}));
+    VKMESH_TRY(MeshFile file, detail::parse_content({inflated.view(), name, options.progress, 0.5}, options));
     file.gzip = true;
     return file;
   });
@@ -330,9 +595,9 @@ Result<WriteOptions> write_options_for(const std::filesystem::path& path) {
   });
 }
 
-Result<std::vector<std::string>> write_mesh(const std::filesystem::path& path, const IndexedFaceSet& mesh,
-                                            const WriteOptions& options) {
-  return detail::catching([&]() -> Result<std::vector<std::string>> {
+Result<std::vector<FileNote>> write_mesh(const std::filesystem::path& path, const IndexedFaceSet& mesh,
+                                         const WriteOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<FileNote>> {
     VKMESH_CHECK(detail::check_writable(mesh, options));
     VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open(path));
     detail::Output out(file.file(), path == "-" ? "standard output" : path.string(), options.gzip);
@@ -342,8 +607,17 @@ Result<std::vector<std::string>> write_mesh(const std::filesystem::path& path, c
   });
 }
 
+Result<std::vector<FileNote>> losses_of(const IndexedFaceSet& mesh, const WriteOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<FileNote>> {
+    VKMESH_CHECK(detail::check_writable(mesh, options));
+    VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open("/dev/null"));
+    detail::Output out(file.file(), "/dev/null", false);
+    return detail::encode(mesh, options, out);
+  });
+}
+
 Result<void> write_polylines(const std::filesystem::path& path, std::span<const Vec3> points,
-                             std::span<const std::vector<std::uint32_t>> polylines) {
+                             std::span<const std::vector<std::uint32_t>> polylines, const DVec3& offset) {
   return detail::catching([&]() -> Result<void> {
     std::vector<std::uint32_t> number(points.size(), 0);  // From 1, as OBJ counts.
     VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open(path));
@@ -358,7 +632,7 @@ Result<void> write_polylines(const std::filesystem::path& path, std::span<const 
         *to++ = 'v';
         for (int axis = 0; axis < 3; ++axis) {
           *to++ = ' ';
-          to = detail::put_number(to, points[v][axis]);
+          to = detail::put_coordinate(to, points[v][axis], offset[axis]);
         }
         *to++ = '\n';
         out.commit(to);

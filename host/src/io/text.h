@@ -19,9 +19,10 @@ namespace vkmesh::detail {
 /// there.
 class TextCursor {
  public:
-  /// `comment` begins a comment that runs to the end of its line; 0 for none.
+  /// `comment` begins a comment that runs to the end of its line, where it begins a line or stands behind a
+  /// blank: never within a word or number. 0 for none.
   explicit TextCursor(std::string_view text, char comment = 0)
-      : at_(text.data()), end_(text.data() + text.size()), comment_(comment) {}
+      : begin_(text.data()), at_(text.data()), end_(text.data() + text.size()), comment_(comment) {}
 
   [[nodiscard]] const char* at() const { return at_; }
   [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
@@ -31,7 +32,7 @@ class TextCursor {
   /// Blanks, and a comment, within the line.
   void skip_blanks() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
-    if (comment_ != 0 && at_ != end_ && *at_ == comment_) skip_to_line_end();
+    if (at_comment()) skip_to_line_end();
   }
 
   /// Blanks, comments and line ends: to the next content, or the end of the text.
@@ -50,11 +51,11 @@ class TextCursor {
     return true;
   }
 
-  /// A run of characters that are neither blank nor line end nor comment; empty where there is none.
+  /// A run of characters that are neither blank nor line end; empty where there is none.
   std::string_view word() {
     skip_blanks();
     const char* from = at_;
-    while (at_ != end_ && !is_blank(*at_) && !ends_line(*at_) && (comment_ == 0 || *at_ != comment_)) ++at_;
+    while (at_ != end_ && !is_blank(*at_) && !ends_line(*at_)) ++at_;
     return {from, static_cast<std::size_t>(at_ - from)};
   }
 
@@ -80,10 +81,22 @@ class TextCursor {
     const auto [to, code] = std::from_chars(from, end_, value);
     if (code == std::errc{}) {
       at_ = to;
+      if constexpr (std::is_floating_point_v<T>)
+        if (at_ != end_ && *at_ == '#') not_a_number(value);
       return true;
     }
     if constexpr (std::is_floating_point_v<T>)
       if (code == std::errc::result_out_of_range) return tiny_number(from, value);
+    return false;
+  }
+
+  /// The next number of the line as a coordinate: finite numbers that a float cannot hold are refused.
+  bool coordinate(double& value) {
+    const char* from = at_;
+    if (number(value) && (!std::isfinite(value) || std::abs(value) <= std::numeric_limits<float>::max()))
+      return true;
+    at_ = from;
+    skip_blanks();
     return false;
   }
 
@@ -96,7 +109,7 @@ class TextCursor {
   /// What stands here, for a message: "'abc'", "the end of the line", "the end of the file".
   [[nodiscard]] std::string found() const {
     if (at_ == end_) return "the end of the file";
-    if (ends_line(*at_) || (comment_ != 0 && *at_ == comment_)) return "the end of the line";
+    if (ends_line(*at_) || at_comment()) return "the end of the line";
     constexpr std::size_t kShown = 24;
     std::string text = "'";
     const char* p = at_;
@@ -114,8 +127,25 @@ class TextCursor {
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
   static bool ends_line(char c) { return c == '\n' || c == '\r'; }
-  bool is_separator() const {
-    return at_ == end_ || is_blank(*at_) || ends_line(*at_) || (comment_ != 0 && *at_ == comment_);
+  bool is_separator() const { return at_ == end_ || is_blank(*at_) || ends_line(*at_); }
+  bool at_comment() const {
+    return comment_ != 0 && at_ != end_ && *at_ == comment_ &&
+           (at_ == begin_ || is_blank(at_[-1]) || ends_line(at_[-1]));
+  }
+
+  /// "1.#INF", "-1.#IND", "1.#QNAN00": what the runtime library of Visual C++ prints for numbers that are
+  /// none.
+  template <class T>
+  void not_a_number(T& value) {
+    constexpr std::string_view kNames[] = {"INF", "IND", "QNAN", "SNAN"};
+    const std::string_view rest(at_ + 1, left() - 1);
+    for (const std::string_view name : kNames) {
+      if (!rest.starts_with(name)) continue;
+      value = std::copysign(
+          name == "INF" ? std::numeric_limits<T>::infinity() : std::numeric_limits<T>::quiet_NaN(), value);
+      for (at_ += 1 + name.size(); at_ != end_ && *at_ >= '0' && *at_ <= '9';) ++at_;
+      return;
+    }
   }
 
   /// Digits so few that any number of them fits, as nearly all indices are. std::from_chars weighs each
@@ -146,6 +176,7 @@ class TextCursor {
     return true;
   }
 
+  const char* begin_;
   const char* at_;
   const char* end_;
   char comment_;

@@ -187,7 +187,7 @@ TEST_CASE("glTF splits points where their corners differ", "[io][gltf]") {
   const auto notes = write_mesh(folder.path() / "a.glb", mesh, kBinary);
   REQUIRE(notes);
   REQUIRE(notes->size() == 1);
-  CHECK(notes->front().find("1 points without a face left out") == 0);
+  CHECK(notes->front().sentence.find("1 points without a face left out") == 0);
 }
 
 TEST_CASE("glTF names what it leaves out, and refuses polygons", "[io][gltf]") {
@@ -212,7 +212,7 @@ TEST_CASE("glTF names what it leaves out, and refuses polygons", "[io][gltf]") {
   notes = write_mesh(folder.path() / "b.glb", mesh, kBinary);
   REQUIRE(notes);
   REQUIRE(notes->size() == 1);
-  CHECK(notes->front().find("no length") != std::string::npos);
+  CHECK(notes->front().sentence.find("no length") != std::string::npos);
 
   for (const auto& [bad, code] : std::vector<std::pair<IndexedFaceSet, ErrorCode>>{
            {quad_cube(), ErrorCode::kUnsuitable}, {IndexedFaceSet{}, ErrorCode::kUnsuitable}}) {
@@ -250,7 +250,7 @@ TEST_CASE("glTF primitives of every mode", "[io][gltf]") {
   CHECK(corners(R"(,"indices":)" + std::to_string(indices8)) == Corners{0, 1, 2, 1, 3, 2});
   CHECK(corners(R"(,"indices":)" + std::to_string(indices16)) == Corners{3, 1, 0});
   CHECK(corners(R"(,"mode":4)") == Corners{0, 1, 2});
-  CHECK(parse_file(with(""), "a.glb").notes ==
+  CHECK(sentences(parse_file(with(""), "a.glb").notes) ==
         std::vector<std::string>{"1 corners that complete no triangle ignored"});
   CHECK(corners(R"(,"mode":5)") == Corners{0, 1, 2, 1, 3, 2});
   CHECK(corners(R"(,"mode":6)") == Corners{1, 2, 0, 2, 3, 0});
@@ -425,7 +425,7 @@ TEST_CASE("glTF buffers lie in the file, beside it, or nowhere that is read", "[
   mesh = read(file("../" + folder.path().filename().string() + "/sub/b c+d.bin"));
   REQUIRE(mesh);
   REQUIRE(mesh->notes.size() == 1);
-  CHECK(mesh->notes[0].find("outside the folder") != std::string::npos);
+  CHECK(mesh->notes[0].sentence.find("outside the folder") != std::string::npos);
 
   CHECK(says(file("sub/b%20c+d.bin"), "a.gltf").find("only a glTF file read from a folder") !=
         std::string::npos);

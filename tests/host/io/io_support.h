@@ -50,6 +50,20 @@ inline Error parse_error(std::string_view content, const std::string& name) {
   return file.error();
 }
 
+/// What notes say.
+inline std::vector<std::string> sentences(const std::vector<FileNote>& notes) {
+  std::vector<std::string> found;
+  for (const FileNote& note : notes) found.push_back(note.sentence);
+  return found;
+}
+
+/// Their codes.
+inline std::vector<std::string> codes(const std::vector<FileNote>& notes) {
+  std::vector<std::string> found;
+  for (const FileNote& note : notes) found.push_back(note.code);
+  return found;
+}
+
 inline std::string encode(const IndexedFaceSet& mesh, const WriteOptions& options) {
   auto bytes = encode_mesh(mesh, options);
   if (!bytes) FAIL(bytes.error().describe());

@@ -81,19 +81,24 @@ TEST_CASE("an OBJ face may precede its vertices", "[io][obj]") {
 }
 
 TEST_CASE("OBJ content that is not kept is named", "[io][obj]") {
-  const MeshFile file = parse_file(
-      std::string("mtllib a b.mtl\no thing\ng one two\nusemtl red\ns off\n") + kHead +
-          "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1 3 4\nl 1 2\nl 2 3\np 1\ncurv 0 1 \\\n1 2\nv 1 2 3 0.5\n",
-      "a.obj");
-  CHECK(file.notes == std::vector<std::string>{"1 'vt' lines ignored: not every corner of a face names one",
-                                               "1 'vn' lines ignored: not every corner of a face names one",
-                                               "1 vertex weights ignored", "1 'curv' lines ignored",
-                                               "2 'l' lines ignored", "1 'mtllib' lines ignored",
-                                               "1 'p' lines ignored", "1 's' lines ignored"});
+  const MeshFile file =
+      parse_file(std::string("mtllib a b.mtl\no thing\nversion 1\ng one two\nusemtl red\ns off\n") + kHead +
+                     "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1 2\nf 1 3 4\nl 1 2\nl 2 3\np 1\ncurv 0 1 \\\n1 "
+                     "2\nv 1 2 3 0.5\n",
+                 "a.obj");
+  CHECK(sentences(file.notes) ==
+        std::vector<std::string>{"1 'vt' lines ignored: no corner of a face names one",
+                                 "3 corners without 'normal' got 0",
+                                 "1 face of fewer than three corners skipped", "1 vertex weights ignored",
+                                 "1 'curv' lines ignored", "2 'l' lines ignored", "1 'p' lines ignored",
+                                 "1 's' lines ignored", "1 'version' lines ignored"});
   const IndexedFaceSet& mesh = std::get<IndexedFaceSet>(file.geometry);
   CHECK(mesh.face_count() == 2);
   CHECK(mesh.points.size() == 5);
-  CHECK(mesh.corner_channels.empty());
+  REQUIRE(mesh.corner_channels.size() == 1);
+  CHECK(mesh.corner_channels[0].values ==
+        ChannelValues(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  CHECK(file.material_libraries == std::vector<std::string>{"a b.mtl"});
 }
 
 TEST_CASE("OBJ materials and groups are labels of faces", "[io][obj]") {
@@ -111,17 +116,21 @@ TEST_CASE("OBJ materials and groups are labels of faces", "[io][obj]") {
   CHECK(material->values == ChannelValues(Numbers{0, 1, 1, 2, 0, 0}));
   const Channel* group = find_channel(mesh.face_channels, "group");
   REQUIRE(group != nullptr);
-  CHECK(group->labels == Labels{"", "top", "side"});
-  CHECK(group->values == ChannelValues(Numbers{0, 1, 1, 2, 2, 1}));
+  CHECK(group->labels == Labels{"", "top"});
+  CHECK(group->values == ChannelValues(Numbers{0, 1, 1, 1, 1, 1}));
+  const Channel* object = find_channel(mesh.face_channels, "object");
+  REQUIRE(object != nullptr);
+  CHECK(object->labels == Labels{"", "side"});
+  CHECK(object->values == ChannelValues(Numbers{0, 0, 0, 1, 1, 1}));
 
   const WriteOptions options = write_as(FileFormat::kObj, FileEncoding::kAscii);
   const std::string text = encode(mesh, options);
   CHECK(text == std::string(kHead) +
-                    "f 1 2 3\ng top\nusemtl red paint\nf 1 2 3\nf 1 2 3\ng side\nusemtl blue\n"
-                    "f 1 2 3\nusemtl\nf 1 2 3\ng top\nf 1 2 3\n");
+                    "f 1 2 3\ng top\nusemtl red paint\nf 1 2 3\nf 1 2 3\no side\nusemtl blue\n"
+                    "f 1 2 3\nusemtl\nf 1 2 3\nf 1 2 3\n");
   const IndexedFaceSet again = parse(text, "a.obj");
   require_same(mesh, again);
-  for (const char* name : {"material", "group"})
+  for (const char* name : {"material", "object", "group"})
     CHECK(find_channel(again.face_channels, name)->labels == find_channel(mesh.face_channels, name)->labels);
 
   // A name before the first face needs no empty one; names without faces are none.
@@ -143,12 +152,13 @@ TEST_CASE("labels that OBJ cannot hold are named", "[io][obj]") {
   using Numbers = std::vector<std::int32_t>;
   CHECK(left_out({"material", 1, Numbers{0, 1, 0, 1}, {"a", "b c"}}) == 0);
   CHECK(left_out({"group", 1, std::vector<std::uint8_t>{0, 1, 0, 1}, {"a", "b"}}) == 0);
+  CHECK(left_out({"material", 1, Numbers{0, 1, 0, 1}, {"Grey #1", "#ff0000"}}) == 0);
   CHECK(left_out({"material", 1, Numbers{0, 1, 2, 1}, {"a", "b"}}) == 1);
   CHECK(left_out({"material", 1, Numbers{0, 1, -1, 1}, {"a", "b"}}) == 1);
   CHECK(left_out({"material", 1, Numbers{0, 1, 0, 1}, {}}) == 1);
   CHECK(left_out({"material", 1, std::vector<float>(4), {"a"}}) == 1);
   CHECK(left_out({"other", 1, Numbers{0, 1, 0, 1}, {"a", "b"}}) == 1);
-  for (const char* label : {"a#b", "a\nf 1 2 3", "a\\", " a", "a "})
+  for (const char* label : {"a # b", "a\nf 1 2 3", "a\\", " a", "a "})
     CHECK(left_out({"material", 1, Numbers(4), {label}}) == 1);
 }
 
@@ -157,6 +167,8 @@ TEST_CASE("OBJ vertex colours are fractions or bytes", "[io][obj]") {
   CHECK(fractions.point_channels[0].values == ChannelValues(std::vector<float>{1, 0.5f, 0, 0, 0, 1}));
   const IndexedFaceSet bytes = parse("v 0 0 0 255 128 0\nv 0 0 1 0 0 1\n", "a.obj");
   CHECK(bytes.point_channels[0].values == ChannelValues(std::vector<std::uint8_t>{255, 128, 0, 0, 0, 1}));
-  const MeshFile some = parse_file("v 0 0 0 1 0.5 0\nv 0 0 1\n", "a.obj");
-  CHECK(some.notes == std::vector<std::string>{"colours of 1 vertices ignored: not all vertices have one"});
+  const MeshFile some = parse_file("v 0 0 1\nv 0 0 0 1 0.5 0\nv 0 0 2\n", "a.obj");
+  CHECK(some.notes == std::vector<FileNote>{{"partial.color", "2 vertices without a colour made white"}});
+  CHECK(std::get<IndexedFaceSet>(some.geometry).point_channels[0].values ==
+        ChannelValues(std::vector<float>{1, 1, 1, 1, 0.5f, 0, 1, 1, 1}));
 }

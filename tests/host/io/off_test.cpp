@@ -62,17 +62,18 @@ TEST_CASE("OFF text is read as real files write it", "[io][off]") {
         "OFF\r\n3 1 0\r\n", "\n  OFF\n\t3\t1\t0\n", "3 1 0\n"})
     require_same(mesh, parse(head + body, "a.off"));
   require_same(mesh,
-               parse("OFF\n3 1 0\n+0 0 0#a\n1e0 0 .0\r\n\r\n0 10E-1 0.0 # b\n3  0 1 2\n\n# end", "a.off"));
+               parse("OFF\n3 1 0\n+0 0 0 #a\n1e0 0 .0\r\n\r\n0 10E-1 0.0 # b\n3  0 1 2\n\n# end", "a.off"));
 
   const MeshFile more = parse_file("OFF\n3 1 0\n0 0 0 9\n1 0 0 9\n0 1 0\n3 0 1 2\n", "a.off");
-  CHECK(more.notes == std::vector<std::string>{
-                          "numbers beyond what the header announces ignored on the lines of 2 vertices"});
+  CHECK(sentences(more.notes) ==
+        std::vector<std::string>{
+            "numbers beyond what the header announces ignored on the lines of 2 vertices"});
 }
 
 TEST_CASE("OFF files may hold more than they promise, but not less", "[io][off]") {
   const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   const MeshFile more = parse_file("OFF\n3 1 0\n" + body + "3 0 2 1\n\n# end\nanything\n", "a.off");
-  CHECK(more.notes == std::vector<std::string>{"2 lines behind what the header promises ignored"});
+  CHECK(sentences(more.notes) == std::vector<std::string>{"2 lines behind what the header promises ignored"});
   CHECK(std::get<IndexedFaceSet>(more.geometry).corners == std::vector<std::uint32_t>{0, 1, 2});
   CHECK(parse_error("OFF\n3 2 0\n" + body, "a.off").message ==
         "expected the number of corners of face 1, found the end of the file");
@@ -110,12 +111,19 @@ TEST_CASE("OFF colours are fractions or bytes, and partial ones are named", "[io
         ChannelValues(std::vector<float>{1, 0, 1, 0, 0, 0}));
   CHECK(face_color("3 0 1 2 1 0 0.5\n3 0 2 3 0 0 0\n").first ==
         ChannelValues(std::vector<float>{1, 0, .5, 0, 0, 0}));
-  for (const char* faces :
-       {"3 0 1 2 255 0 1\n3 0 2 3\n", "3 0 1 2 7\n3 0 2 3\n", "3 0 1 2\n3 0 2 3 255 0 1 0\n"})
-    CHECK(face_color(faces) ==
-          std::pair(ChannelValues{},
-                    std::vector<std::string>{"colours of 1 faces ignored: not all faces have one of "
-                                             "3 or 4 components"}));
+  // Faces without a colour are white.
+  CHECK(face_color("3 0 1 2 255 0 1\n3 0 2 3\n") ==
+        std::pair(
+            ChannelValues(std::vector<std::uint8_t>{255, 0, 1, 255, 255, 255}),
+            std::vector<FileNote>{{"partial.color", "1 faces without a colour of 3 components made white"}}));
+  CHECK(face_color("3 0 1 2\n3 0 2 3 0.5 0 1 0\n") ==
+        std::pair(
+            ChannelValues(std::vector<float>{1, 1, 1, 1, 0.5f, 0, 1, 0}),
+            std::vector<FileNote>{{"partial.color", "1 faces without a colour of 4 components made white"}}));
+  CHECK(face_color("3 0 1 2 7\n3 0 2 3\n") ==
+        std::pair(ChannelValues{},
+                  std::vector<FileNote>{
+                      {"dropped.color", "colours of 1 faces ignored: they number colours of a table"}}));
 }
 
 TEST_CASE("real OFF, PLY and STL files are read, or refused for a reason", "[io][off][data]") {
@@ -134,7 +142,8 @@ TEST_CASE("real OFF, PLY and STL files are read, or refused for a reason", "[io]
     // It holds a face more than it promises.
     if (path.filename() == "prim.off") {
       CHECK(std::get<IndexedFaceSet>(file->geometry).face_count() == 7);
-      CHECK(file->notes == std::vector<std::string>{"1 lines behind what the header promises ignored"});
+      CHECK(sentences(file->notes) ==
+            std::vector<std::string>{"1 lines behind what the header promises ignored"});
     }
     CHECK(path.extension() == "." + name_of(file->format));
     const auto mesh = to_indexed_face_set(*file);

@@ -116,10 +116,11 @@ TEST_CASE("PLY channels that cannot be written are named", "[io][ply]") {
   const auto notes = write_mesh(folder.path() / "a.ply", mesh,
                                 write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
   REQUIRE(notes);
-  CHECK(*notes == std::vector<std::string>{"point channel 'two words' left out: its name is not one word",
-                                           "point channel 'x' left out: its property names are taken",
-                                           "point channel 'color' rounded to 8 bits",
-                                           "corner channel 'uv' left out: PLY has no attributes of corners"});
+  CHECK(sentences(*notes) ==
+        std::vector<std::string>{"point channel 'two words' left out: its name is not one word",
+                                 "point channel 'x' left out: its property names are taken",
+                                 "point channel 'color' rounded to 8 bits",
+                                 "corner channel 'uv' left out: PLY has no attributes of corners"});
   const IndexedFaceSet back = parse(read_bytes(folder.path() / "a.ply"), "a.ply");
   REQUIRE(back.point_channels.size() == 1);
   CHECK(std::get<std::vector<std::uint8_t>>(back.point_channels[0].values) ==
@@ -205,7 +206,7 @@ TEST_CASE("PLY content that is not kept is passed over and named", "[io][ply]") 
                       "0 0 0 0\n1 0 0 2 0.5 0.25\n1 1 0 0\n0 1 0 1 9\n0 1\n";
   const MeshFile text = parse_file(ascii, "a.ply");
   require_same(expected, std::get<IndexedFaceSet>(text.geometry));
-  CHECK(text.notes == notes);
+  CHECK(sentences(text.notes) == notes);
 
   for (const bool big : {false, true}) {
     std::string binary = "ply\nformat binary_" + std::string(big ? "big" : "little") + "_endian" + header;
@@ -229,7 +230,7 @@ TEST_CASE("PLY content that is not kept is passed over and named", "[io][ply]") 
     put(0), put(1);
     const MeshFile file = parse_file(binary, "a.ply");
     require_same(expected, std::get<IndexedFaceSet>(file.geometry));
-    CHECK(file.notes == notes);
+    CHECK(sentences(file.notes) == notes);
   }
 }
 
@@ -275,7 +276,7 @@ std::string parsed_in_blocks(const std::string& content, std::size_t block_bytes
   const auto file = detail::ply::parse({content, "a.ply", progress, 0}, block_bytes);
   if (!file) return file.error().describe();
   std::string text;
-  for (const std::string& note : file->notes) text += note + "\n";
+  for (const FileNote& note : file->notes) text += note.sentence + "\n";
   const auto& mesh = std::get<IndexedFaceSet>(file->geometry);
   text += encode(mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
   return text + (mesh.face_offsets.empty() ? "triangles" : "polygons");

@@ -120,10 +120,11 @@ TEST_CASE("VRML 2 groups move and choose their children", "[io][vrml]") {
   CHECK(scene("Switch { whichChoice 1 choice [ " + triangle + other + "] }").corners.size() == 6);
   CHECK(scene("Switch { choice [ " + triangle + other + "] whichChoice 0 }").corners.size() == 3);
   const MeshFile none = scene_file(triangle + "Switch { choice [ " + triangle + other + "] }");
-  CHECK(none.notes == std::vector<std::string>{"2 children that a 'Switch' does not choose ignored"});
+  CHECK(sentences(none.notes) ==
+        std::vector<std::string>{"2 children that a 'Switch' does not choose ignored"});
   const MeshFile lod = scene_file("LOD { range [ 5 ] level [ " + triangle + other + "] }");
   CHECK(std::get<IndexedFaceSet>(lod.geometry).corners.size() == 3);
-  CHECK(lod.notes == std::vector<std::string>{"1 levels of detail but the first ignored"});
+  CHECK(sentences(lod.notes) == std::vector<std::string>{"1 levels of detail but the first ignored"});
 }
 
 TEST_CASE("VRML 2 nodes are used again", "[io][vrml]") {
@@ -147,19 +148,20 @@ TEST_CASE("VRML 2 nodes are used again", "[io][vrml]") {
 
 TEST_CASE("VRML 2 content that is not kept is named", "[io][vrml]") {
   const MeshFile file = scene_file(
-      "PROTO Wheel [ field SFFloat r 1 exposedField SFNode n Group { } ] { Transform { scale IS r } }\n"
+      "PROTO Wheel [ field SFVec3f s 1 1 1 exposedField SFNode n Group { } ] { Transform { scale IS s } }\n"
       "EXTERNPROTO Far [ field SFFloat r ] [ \"a.wrl#Far\" ]\nEXTERNPROTO Near [ ] \"b.wrl\"\n"
-      "WorldInfo { title \"a\" } DEF T TimeSensor { } Wheel { r 2 } Wheel { } Inline { url \"c.wrl\" }\n"
+      "WorldInfo { title \"a\" } DEF T TimeSensor { } Wheel { s 2 2 2 } Wheel { } Inline { url \"c.wrl\" }\n"
       "Script { field SFBool a TRUE eventIn SFTime b url \"javascript: { }\" }\n"
       "Shape { geometry IndexedLineSet { coord Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }\n"
       "Shape { geometry Box { } }\n" +
       face_set(kTwo) + "ROUTE T.fraction_changed TO P.set_fraction\n");
-  CHECK(file.notes == std::vector<std::string>{"3 PROTO definitions ignored", "1 ROUTE statements ignored",
-                                               "1 'Box' nodes ignored", "1 'IndexedLineSet' nodes ignored",
-                                               "1 'Inline' nodes ignored", "1 'Script' nodes ignored",
-                                               "1 'TimeSensor' nodes ignored", "2 'Wheel' nodes ignored",
-                                               "1 'WorldInfo' nodes ignored"});
-  CHECK(std::get<IndexedFaceSet>(file.geometry).corners.size() == 6);
+  CHECK(sentences(file.notes) ==
+        std::vector<std::string>{"2 EXTERNPROTO definitions ignored", "1 ROUTE statements ignored",
+                                 "the inlined file 'c.wrl' ignored: this one was not read from a folder",
+                                 "1 'IndexedLineSet' nodes ignored", "1 'Inline' nodes ignored",
+                                 "1 'Script' nodes ignored", "1 'TimeSensor' nodes ignored",
+                                 "1 'WorldInfo' nodes ignored"});
+  CHECK(std::get<IndexedFaceSet>(file.geometry).corners.size() == 24 + 6);
 }
 
 TEST_CASE("malformed VRML 2 files are refused where they break", "[io][vrml][bad]") {
@@ -168,7 +170,8 @@ TEST_CASE("malformed VRML 2 files are refused where they break", "[io][vrml][bad
   CHECK(
       error(face_set(kTwo + "color Color { color [ 0 0 0 ] } colorIndex [ 0 0 0 -1\n0 0 1 ] ")).where.line ==
       3u);
-  CHECK_THAT(error("Shape { geometry Box { } }").message, Catch::Contains("neither polygons nor points"));
+  CHECK_THAT(error("Shape { geometry Text { } }").message,
+             Catch::Contains("neither polygons nor points (nodes ignored: 1 'Text')"));
   CHECK_THAT(error("Group { children [ Group { } coordIndex 1 ] }").message, Catch::Contains("expected '{'"));
   CHECK_THAT(error("PROTO A [ ] { Group {").message, Catch::Contains("PROTO has no body that ends"));
   CHECK_THAT(error("Group { children [ Group { } ").message, Catch::Contains("list of nodes does not end"));

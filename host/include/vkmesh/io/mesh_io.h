@@ -1,4 +1,4 @@
-// Reading and writing mesh files: PLY, OBJ, OFF, STL, glTF, OpenInventor and VRML, each also gzipped.
+// Reading and writing mesh files: PLY, OBJ, OFF, STL, glTF, OpenInventor, VRML and XYZ, each also gzipped.
 #pragma once
 
 #include <cstddef>
@@ -10,37 +10,62 @@
 
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
+#include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/mesh/polygon_soup.h>
 
 namespace vkmesh {
 
-enum class FileFormat { kPly, kObj, kOff, kStl, kGltf, kInventor, kVrml1, kVrml2 };
+enum class FileFormat { kPly, kObj, kOff, kStl, kGltf, kInventor, kVrml1, kVrml2, kXyz };
 enum class FileEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
-/// "ply", "obj", "off", "stl", "gltf", "iv", "vrml1", "vrml2".
+/// "ply", "obj", "off", "stl", "gltf", "iv", "vrml1", "vrml2", "xyz".
 [[nodiscard]] std::string name_of(FileFormat format);
 /// "ascii", "binary_little_endian", "binary_big_endian".
 [[nodiscard]] std::string name_of(FileEncoding encoding);
 
+/// A difference between a file and the mesh read from it or written to it.
+struct FileNote {
+  /// What happened to what, for programs: "dropped.skin", "rounded.positions". The first word is "dropped"
+  /// (content that is not kept), "skipped" (malformed content that is passed over), "rounded" (to fewer
+  /// bits), "replaced" (values a format cannot hold), "partial" (elements without a value got a neutral one),
+  /// "nonfinite" (values that are not finite are kept), "repaired" (a frame around the content deviates from
+  /// the format), or "offset" (positions are relative to an offset). Codes stay the same between versions.
+  std::string code;
+  std::string sentence;  ///< For people: "12 'l' lines ignored".
+
+  /// Whether the mesh holds less than the file: true for all but "repaired" and "offset".
+  [[nodiscard]] bool is_loss() const;
+  friend bool operator==(const FileNote&, const FileNote&) = default;
+};
+
 /// A mesh as it was read.
 struct MeshFile {
   std::variant<IndexedFaceSet, PolygonSoup> geometry;  ///< PolygonSoup for STL, IndexedFaceSet for the rest.
+  DVec3 offset{0.0};  ///< Points are positions of the file less this: see ReadOptions.
   FileFormat format = FileFormat::kPly;
   FileEncoding encoding = FileEncoding::kAscii;
   bool gzip = false;
-  /// One sentence for each kind of content that was not kept ("12 'l' lines ignored").
-  std::vector<std::string> notes;
+  std::vector<std::string> material_libraries;  ///< OBJ: the files that `mtllib` names.
+  std::vector<FileNote> notes;                  ///< One for each kind of difference.
 };
 
 struct ReadOptions {
   Progress progress;
+  /// Subtracted from every position before it is rounded to single precision.
+  DVec3 offset{0.0};
+  /// Where a mesh lies so far from the origin that single precision would lose more than 2^-21 of its size
+  /// (map coordinates), and `offset` is 0: subtract an offset on a grid of powers of two, exactly, and return
+  /// it in MeshFile::offset. Without this, positions are rounded where they are, and a note tells the error.
+  bool find_offset = false;
 };
 
 /// Reads a file of any known format. The content decides the format, the extension only where the content
-/// leaves it open (OBJ). gzip is recognised by its magic bytes. "-" reads standard input. O(bytes); no
-/// allocation that the bytes present do not justify. A face of fewer than three corners is refused; one
-/// that repeats a point is not (consolidate counts it). Errors: kUnreadable (missing, a directory, malformed,
+/// leaves it open (OBJ, XYZ). gzip is recognised by its magic bytes, a UTF-8 byte-order mark is passed over.
+/// "-" reads standard input. O(bytes); no allocation that the bytes present do not justify. Faces of fewer
+/// than three corners, and points that are not finite and that no face uses, are skipped and counted in the
+/// notes; a face that repeats a point is kept (consolidate counts it). Colours are 8-bit integers or
+/// fractions of 1, whatever type the file gives them. Errors: kUnreadable (missing, a directory, malformed,
 /// an index out of range, a coordinate that is not finite; with file and line or byte), kOutOfMemory,
 /// kInterrupted.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
@@ -59,6 +84,8 @@ struct WriteOptions {
   bool gzip = false;
   /// What the file's comment says made it; left out of formats without comments. Empty for none.
   std::string comment;
+  DVec3 offset{0.0};  ///< Added to every point; PLY and glTF then hold doubles where they write binary.
+  std::vector<std::string> material_libraries;  ///< OBJ: written as `mtllib`.
 };
 
 /// Options from a file name: "a.ply.gz" is a gzipped binary PLY, "a.obj" OBJ, "-" binary PLY.
@@ -67,20 +94,26 @@ struct WriteOptions {
 
 /// Writes the mesh. The file appears whole or not at all: it is written beside its place, then renamed. "-"
 /// writes to standard output. What the format cannot hold (STL has no attributes) is left out and named in
-/// the returned notes. Errors: kNotWritable (with the system's reason), kUnsuitable (polygons into STL),
+/// the returned notes. Normals, uv and colours that are not finite are written as 0. Errors: kNotWritable
+/// (with the system's reason), kUnsuitable (polygons or a point cloud into STL, faces into XYZ),
 /// kOutOfMemory.
-[[nodiscard]] Result<std::vector<std::string>> write_mesh(const std::filesystem::path& path,
-                                                          const IndexedFaceSet& mesh,
-                                                          const WriteOptions& options);
+[[nodiscard]] Result<std::vector<FileNote>> write_mesh(const std::filesystem::path& path,
+                                                       const IndexedFaceSet& mesh,
+                                                       const WriteOptions& options);
+
+/// What write_mesh() would return, without a file: the bytes are made and let go.
+[[nodiscard]] Result<std::vector<FileNote>> losses_of(const IndexedFaceSet& mesh,
+                                                      const WriteOptions& options);
 
 /// The same into memory.
 [[nodiscard]] Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh,
                                                          const WriteOptions& options);
 
 /// Writes polylines, each the points of one in order, as the lines ("l") of an OBJ file that holds the points
-/// they name. Otherwise as write_mesh(). Errors: kUsage for an index out of range; kNotWritable;
-/// kOutOfMemory.
+/// they name; `offset` is added to each. Otherwise as write_mesh(). Errors: kUsage for an index out of range;
+/// kNotWritable; kOutOfMemory.
 [[nodiscard]] Result<void> write_polylines(const std::filesystem::path& path, std::span<const Vec3> points,
-                                           std::span<const std::vector<std::uint32_t>> polylines);
+                                           std::span<const std::vector<std::uint32_t>> polylines,
+                                           const DVec3& offset = DVec3(0.0));
 
 }  // namespace vkmesh

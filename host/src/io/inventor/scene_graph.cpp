@@ -75,6 +75,10 @@ class SceneScanner {
     return false;
   }
 
+  void skip_one() {
+    if (at_ != end_) ++at_;
+  }
+
   /// To behind the next `c`. False where there is none.
   bool skip_past(char c) {
     while (at_ != end_)
@@ -130,15 +134,24 @@ class SceneParser {
   }
 
   void add_to(Notes& notes) const {
-    const auto note = [&](std::size_t count, const char* what) {
-      if (count > 0) notes.push_back(std::to_string(count) + " " + what + " ignored");
+    const auto note = [&](std::size_t count, const char* code, const char* what) {
+      if (count > 0) notes.push_back({code, std::to_string(count) + " " + what + " ignored"});
     };
-    note(prototypes_, "PROTO definitions");
-    note(routes_, "ROUTE statements");
-    note(undefined_, "uses of names that no node before them has");
+    note(prototypes_, "dropped.externproto", "EXTERNPROTO definitions");
+    note(routes_, "dropped.route", "ROUTE statements");
+    note(connections_, "dropped.connection", "connections of fields");
+    note(undefined_, "skipped.use", "uses of names that no node before them has");
   }
 
  private:
+  /// PROTO: a node type that a file makes out of others.
+  struct Prototype {
+    std::vector<SceneField> fields;
+    SceneScanner body;
+    std::size_t length = 0;  ///< Of the body.
+    std::size_t number = 0;  ///< Those defined before have lower ones.
+  };
+
   tl::unexpected<Error> expected(const std::string& what) {
     scan_.skip();
     return source_.bad_line(scan_.at(), "expected " + what + ", found " + TextCursor(scan_.rest()).found());
@@ -158,7 +171,10 @@ class SceneParser {
         if (scan_.word().empty()) return expected("a ROUTE from a field TO a field");
       return {};
     }
-    if (word == "PROTO" || word == "EXTERNPROTO") return prototype(word);
+    if (word == "PROTO") return prototype(depth);
+    if (word == "EXTERNPROTO") return external_prototype();
+    // Events of a PROTO's body that go to its interface.
+    if (given_ != nullptr && node != nullptr && is_event_mapping()) return {};
     const bool is_node = word == "DEF" || word == "USE" || scan_.peek() == '{';
     if (is_node) {
       scan_ = before;
@@ -170,16 +186,10 @@ class SceneParser {
     return field(word, *node, depth);
   }
 
-  Result<void> prototype(std::string_view keyword) {
+  Result<void> external_prototype() {
     ++prototypes_;
-    const char* at = scan_.at();
     static_cast<void>(scan_.word());
-    if (!scan_.accept('[') || !scan_.skip_nested('[', ']')) return expected("'[' and ']' after PROTO");
-    if (keyword == "PROTO") {
-      if (!scan_.accept('{') || !scan_.skip_nested('{', '}'))
-        return source_.bad_line(at, "a PROTO has no body that ends");
-      return {};
-    }
+    if (!scan_.accept('[') || !scan_.skip_nested('[', ']')) return expected("'[' and ']' after EXTERNPROTO");
     if (scan_.peek() == '"' ? scan_.skip_string() : scan_.accept('[') && scan_.skip_nested('[', ']'))
       return {};
     return expected("the addresses of an EXTERNPROTO");
@@ -217,8 +227,12 @@ class SceneParser {
       return source_.bad_line(type.data(), "the node " + shown(type) + " does not end");
     };
     if (known == known_.end()) {
+      const auto prototype = prototypes_of_.find(type);
+      if (prototype != prototypes_of_.end() && prototype->second.number < visible_prototypes_)
+        return expand(prototype->second, type, depth);
       ignored_.add(type);
-      if (!scan_.skip_nested('{', '}')) return endless();
+      VKMESH_TRY(const bool ends, skip_ignored(depth));
+      if (!ends) return endless();
       return kIgnored;
     }
     if (depth >= kMaxSceneDepth)
@@ -236,17 +250,124 @@ class SceneParser {
     return static_cast<std::uint32_t>(graph_.nodes.size() - 1);
   }
 
+  /// Over the body of a node of no known type; what it gives a name to, others may use. False where the body
+  /// does not end.
+  Result<bool> skip_ignored(std::size_t depth) {
+    if (depth >= kMaxSceneDepth) return scan_.skip_nested('{', '}');
+    for (std::size_t open = 1; open > 0;) {
+      const char c = scan_.peek();
+      if (c == '\0' && scan_.at_end()) return false;
+      const SceneScanner before = scan_;
+      if (c == '"') {
+        if (!scan_.skip_string()) return false;
+      } else if (scan_.accept('{')) {
+        ++open;
+      } else if (scan_.accept('}')) {
+        --open;
+      } else if (const std::string_view word = scan_.word(); word.empty()) {
+        scan_.skip_one();
+      } else if (word == "DEF") {
+        scan_ = before;
+        const auto node = read_node(depth + 1);
+        if (node) continue;
+        if (node.error().code != ErrorCode::kUnreadable) return tl::unexpected<Error>(node.error());
+        // Nothing of the kind: what is left of this body is passed over as it is.
+        scan_ = before;
+        for (; open > 0; --open)
+          if (!scan_.skip_nested('{', '}')) return false;
+      }
+    }
+    return true;
+  }
+
+  /// [ field Type name value ... ] of a PROTO: the values that its instances need not give.
+  Result<std::vector<SceneField>> interface(std::size_t depth) {
+    std::vector<SceneField> fields;
+    while (!scan_.accept(']')) {
+      const std::string_view access = scan_.word();
+      const std::string_view type = scan_.word();
+      SceneField value;
+      value.name = scan_.word();
+      if (access.empty() || type.empty() || value.name.empty()) return expected("a field of a PROTO");
+      if (access != "field" && access != "exposedField") continue;
+      VKMESH_CHECK(read_value(value, depth + 1));
+      fields.push_back(std::move(value));
+    }
+    return fields;
+  }
+
+  Result<void> prototype(std::size_t depth) {
+    const char* at = scan_.at();
+    const std::string_view name = scan_.word();
+    if (name.empty() || !scan_.accept('[')) return expected("'[' after PROTO and its name");
+    if (depth >= kMaxSceneDepth)
+      return source_.bad_line(at, "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
+    Prototype made{{}, scan_, 0, 0};
+    VKMESH_TRY(made.fields, interface(depth));
+    if (!scan_.accept('{')) return expected("'{' after the interface of a PROTO");
+    made.body = scan_;
+    if (!scan_.skip_nested('{', '}')) return source_.bad_line(at, "a PROTO has no body that ends");
+    made.length = static_cast<std::size_t>(scan_.at() - made.body.at());
+    made.number = prototypes_of_.size();
+    // The first of a name stays: so none can stand in itself.
+    prototypes_of_.try_emplace(name, std::move(made));
+    return {};
+  }
+
+  /// An instance of a PROTO, whose body begins here: the first node of the PROTO's body, in which the fields
+  /// that the instance gives stand where the body says IS.
+  Result<std::uint32_t> expand(const Prototype& prototype, std::string_view type, std::size_t depth) {
+    if (depth >= kMaxSceneDepth)
+      return source_.bad_line(type.data(),
+                              "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
+    if (prototype.length > expansion_)
+      return source_.bad_line(type.data(),
+                              "the instances of PROTOs make a scene out of proportion to the file");
+    expansion_ -= prototype.length;
+    std::vector<SceneField> given = prototype.fields;
+    SceneNode instance;
+    while (!scan_.accept('}')) {
+      if (scan_.at_end()) return source_.bad_line(type.data(), "the node " + shown(type) + " does not end");
+      const SceneScanner before = scan_;
+      const std::string_view word = scan_.word();
+      if (word == "ROUTE" || word == "PROTO" || word == "EXTERNPROTO" || word.empty()) {
+        scan_ = before;
+        VKMESH_CHECK(statement(&instance, instance.children, depth + 1));
+        continue;
+      }
+      SceneField value;
+      value.name = word;
+      VKMESH_CHECK(read_value(value, depth + 1));
+      for (SceneField& field : given)
+        if (field.name == word) field = value;
+    }
+    // Names within the body are its own.
+    const SceneScanner behind = std::exchange(scan_, prototype.body);
+    const std::size_t visible = std::exchange(visible_prototypes_, prototype.number);
+    std::map<std::string_view, std::uint32_t> names;
+    std::swap(names, defined_);
+    const std::vector<SceneField>* const outer = std::exchange(given_, &given);
+    std::vector<std::uint32_t> nodes;
+    const auto read = [&]() -> Result<void> {
+      while (!scan_.accept('}')) VKMESH_CHECK(statement(nullptr, nodes, depth + 1));
+      return {};
+    };
+    Result<void> result = read();
+    given_ = outer;
+    std::swap(names, defined_);
+    visible_prototypes_ = visible;
+    scan_ = behind;
+    if (!result) return tl::unexpected<Error>(std::move(result.error()));
+    return nodes.empty() ? kIgnored : nodes.front();
+  }
+
   Result<void> field(std::string_view name, SceneNode& node, std::size_t depth) {
     SceneField value;
     value.name = name;
     VKMESH_CHECK(read_value(value, depth));
-    // A connection: "= USE node.field".
-    const SceneScanner before = scan_;
-    if (scan_.word() == "=") {
-      if (scan_.word() == "USE") static_cast<void>(scan_.word());
-    } else {
-      scan_ = before;
-    }
+    VKMESH_CHECK(skip_connection(depth));
+    // Inventor writes ~ for a value that does not count.
+    if (value.text == "~") return {};
     if (std::find(fields_.begin(), fields_.end(), name) == fields_.end()) return {};
     for (SceneField& other : node.fields)
       if (other.name == name) {
@@ -254,6 +375,31 @@ class SceneParser {
         return {};
       }
     node.fields.push_back(std::move(value));
+    return {};
+  }
+
+  /// Over "= USE node.field" or "= Engine { } . field" behind a value, which it may change while a program
+  /// runs.
+  Result<void> skip_connection(std::size_t depth) {
+    const SceneScanner before = scan_;
+    if (scan_.word() != "=") {
+      scan_ = before;
+      return {};
+    }
+    ++connections_;
+    const SceneScanner source = scan_;
+    if (scan_.word() == "USE") {
+      static_cast<void>(scan_.word());
+    } else {
+      scan_ = source;
+      VKMESH_CHECK(read_node(depth));
+    }
+    const SceneScanner behind = scan_;
+    const std::string_view word = scan_.word();
+    if (word == ".")
+      static_cast<void>(scan_.word());
+    else if (!word.starts_with('.'))
+      scan_ = behind;
     return {};
   }
 
@@ -276,6 +422,7 @@ class SceneParser {
     }
     if (first == '"') {
       if (!scan_.skip_string()) return source_.bad_line(from, "a string does not end");
+      to.text = between(from, scan_.at());
       return {};
     }
     if (first == '(') {
@@ -301,8 +448,31 @@ class SceneParser {
       return {};
     }
     to.text = scan_.word();
+    if (to.text == "IS" && given_ != nullptr) {
+      const std::string_view name = scan_.word();
+      to.text = {};
+      for (const SceneField& value : *given_)
+        if (value.name == name) {
+          to.text = value.text;
+          to.nodes = value.nodes;
+        }
+      return {};
+    }
     if (to.text.empty()) return expected("the value of the field " + shown(to.name));
     return {};
+  }
+
+  /// "name IS event": no value that counts; passed over.
+  bool is_event_mapping() {
+    const SceneScanner before = scan_;
+    if (scan_.word() == "IS") {
+      const std::string_view name = scan_.word();
+      const bool is_field = std::any_of(given_->begin(), given_->end(),
+                                        [&](const SceneField& value) { return value.name == name; });
+      if (!is_field && !name.empty()) return true;
+    }
+    scan_ = before;
+    return false;
   }
 
   bool begins_node() {
@@ -314,6 +484,7 @@ class SceneParser {
   }
 
   static constexpr std::uint32_t kIgnored = 0;
+  static constexpr std::size_t kAll = ~std::size_t{0};
 
   const Source& source_;
   SceneScanner scan_;
@@ -322,7 +493,11 @@ class SceneParser {
   IgnoredNodes& ignored_;
   SceneGraph graph_;
   std::map<std::string_view, std::uint32_t> defined_;
-  std::size_t statements_ = 0, prototypes_ = 0, routes_ = 0, undefined_ = 0;
+  std::map<std::string_view, Prototype> prototypes_of_;
+  std::size_t visible_prototypes_ = kAll;           ///< Those of lower numbers may be used.
+  const std::vector<SceneField>* given_ = nullptr;  ///< The fields of the instance that is expanded.
+  std::uint64_t expansion_ = 64 * static_cast<std::uint64_t>(source_.bytes.size()) + (std::uint64_t{1} << 22);
+  std::size_t statements_ = 0, prototypes_ = 0, routes_ = 0, undefined_ = 0, connections_ = 0;
 };
 
 }  // namespace
@@ -351,8 +526,17 @@ void IgnoredNodes::add(std::string_view type) {
 
 void IgnoredNodes::add_to(Notes& notes) const {
   for (const auto& [type, count] : counts_)
-    notes.push_back(std::to_string(count) + " " + shown(type) + " nodes ignored");
-  if (others_ > 0) notes.push_back(std::to_string(others_) + " nodes of other types ignored");
+    notes.push_back({"dropped.node", std::to_string(count) + " " + shown(type) + " nodes ignored"});
+  if (others_ > 0)
+    notes.push_back({"dropped.node", std::to_string(others_) + " nodes of other types ignored"});
+}
+
+std::string IgnoredNodes::text() const {
+  std::string text;
+  std::size_t listed = 0;
+  for (const auto& [type, count] : counts_)
+    if (listed++ < 3) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + shown(type);
+  return listed > 3 ? text + ", …" : text;
 }
 
 Result<SceneGraph> parse_scene(const Source& source, std::span<const KnownNode> known,
@@ -390,16 +574,19 @@ Result<void> SceneNumbers::each(std::string_view text, const char* what, Read&& 
   }
 }
 
-Result<const SceneFloats*> SceneNumbers::floats(const SceneField* field, unsigned width) {
+template <class T>
+Result<const SceneArray<T>*> SceneNumbers::rows(const SceneField* field, unsigned width,
+                                                std::map<const char*, SceneArray<T>>& known) {
   if (field == nullptr) return nullptr;
-  const auto [found, is_new] = floats_.try_emplace(field->text.data());
-  SceneFloats& array = found->second;
+  const auto [found, is_new] = known.try_emplace(field->text.data());
+  SceneArray<T>& array = found->second;
   if (is_new) {
     array.text = field->text;
     VKMESH_CHECK(each(field->text, "a number", [&](SceneScanner& scan) {
       const SceneScanner before = scan;
-      float value = 0;
-      if (!scan.number(value) || !std::isfinite(value)) {
+      T value = 0;
+      // What a float cannot hold is no number here, whatever the array keeps.
+      if (!scan.number(value) || !std::isfinite(static_cast<float>(value))) {
         scan = before;
         return false;
       }
@@ -413,6 +600,14 @@ Result<const SceneFloats*> SceneNumbers::floats(const SceneField* field, unsigne
                                                     " numbers, which are not rows of " +
                                                     std::to_string(width));
   return &array;
+}
+
+Result<const SceneFloats*> SceneNumbers::floats(const SceneField* field, unsigned width) {
+  return rows(field, width, floats_);
+}
+
+Result<const SceneDoubles*> SceneNumbers::doubles(const SceneField* field, unsigned width) {
+  return rows(field, width, doubles_);
 }
 
 Result<const SceneIndices*> SceneNumbers::indices(const SceneField* field) {
@@ -459,7 +654,7 @@ Result<const SceneFloats*> SceneNumbers::packed_colors(const SceneField* field) 
 
 Result<void> SceneNumbers::values(const SceneField* field, std::span<double> to) {
   if (field == nullptr) return {};
-  VKMESH_TRY(const SceneFloats* array, floats(field, 1));
+  VKMESH_TRY(const SceneDoubles* array, doubles(field, 1));
   if (array->values.size() != to.size())
     return source_.bad_line(field->name.data(), "the field " + shown(field->name) + " holds " +
                                                     std::to_string(array->values.size()) +

@@ -54,14 +54,17 @@ class IgnoredNodes {
  public:
   void add(std::string_view type);
   void add_to(Notes& notes) const;
+  /// "3 'IndexedLineSet', 1 'Sound'"; empty where nothing was ignored.
+  [[nodiscard]] std::string text() const;
 
  private:
   std::map<std::string_view, std::size_t> counts_;
   std::size_t others_ = 0;
 };
 
-/// Splits the text into nodes. Types that `known` does not list and fields that `fields` does not list are
-/// skipped; the former are counted, as are PROTO, EXTERNPROTO and ROUTE and uses of names nobody defined.
+/// Splits the text into nodes. Instances of PROTOs are expanded. Types that `known` does not list and fields
+/// that `fields` does not list are skipped, but for the nodes in them that have a name; the former are
+/// counted, as are EXTERNPROTO and ROUTE, connections of fields and uses of names nobody defined.
 [[nodiscard]] Result<SceneGraph> parse_scene(const Source& source, std::span<const KnownNode> known,
                                              std::span<const std::string_view> fields, IgnoredNodes& ignored,
                                              Notes& notes);
@@ -73,6 +76,7 @@ struct SceneArray {
   std::string_view text;
 };
 using SceneFloats = SceneArray<float>;
+using SceneDoubles = SceneArray<double>;
 using SceneIndices = SceneArray<std::int32_t>;
 
 /// The numbers of fields, each field read once. What it returns lives as long as it.
@@ -82,6 +86,8 @@ class SceneNumbers {
 
   /// Rows of `width` finite numbers. nullptr where the field is missing.
   [[nodiscard]] Result<const SceneFloats*> floats(const SceneField* field, unsigned width);
+  /// The same in the precision of positions.
+  [[nodiscard]] Result<const SceneDoubles*> doubles(const SceneField* field, unsigned width);
   /// Whole numbers. nullptr where the field is missing, empty or a single -1, which Inventor writes for it.
   [[nodiscard]] Result<const SceneIndices*> indices(const SceneField* field);
   /// 0xRRGGBBAA as four fractions of 1.
@@ -103,10 +109,14 @@ class SceneNumbers {
   [[nodiscard]] static const char* place_of(std::string_view text, std::size_t i);
   template <class Read>
   Result<void> each(std::string_view text, const char* what, Read&& read);
+  template <class T>
+  Result<const SceneArray<T>*> rows(const SceneField* field, unsigned width,
+                                    std::map<const char*, SceneArray<T>>& known);
 
   const Source& source_;
   const char* farthest_;
   std::map<const char*, SceneFloats> floats_, colors_;
+  std::map<const char*, SceneDoubles> doubles_;
   std::map<const char*, SceneIndices> indices_;
 };
 

@@ -9,6 +9,7 @@
 #include "io/formats.h"
 #include "io/inventor/scene_graph.h"
 #include "io/inventor/scene_mesh.h"
+#include "io/inventor/scene_primitives.h"
 #include "io/inventor/scene_transform.h"
 
 namespace vkmesh::detail {
@@ -45,7 +46,12 @@ enum Kind {
   kIndexedTriangleStripSet,
   kTriangleStripSet,
   kQuadMesh,
-  kPointSet
+  kPointSet,
+  kCube,
+  kSphere,
+  kCone,
+  kCylinder,
+  kInline
 };
 
 constexpr KnownNode kNodes[] = {{"Separator", kSeparator},
@@ -82,7 +88,13 @@ constexpr KnownNode kNodes[] = {{"Separator", kSeparator},
                                 {"IndexedTriangleStripSet", kIndexedTriangleStripSet},
                                 {"TriangleStripSet", kTriangleStripSet},
                                 {"QuadMesh", kQuadMesh},
-                                {"PointSet", kPointSet}};
+                                {"PointSet", kPointSet},
+                                {"Cube", kCube},
+                                {"Sphere", kSphere},
+                                {"Cone", kCone},
+                                {"Cylinder", kCylinder},
+                                {"WWWInline", kInline},
+                                {"File", kInline}};
 
 constexpr std::string_view kFields[] = {"whichChild",
                                         "point",
@@ -116,7 +128,14 @@ constexpr std::string_view kFields[] = {"whichChild",
                                         "startIndex",
                                         "verticesPerRow",
                                         "verticesPerColumn",
-                                        "numPoints"};
+                                        "numPoints",
+                                        "width",
+                                        "height",
+                                        "depth",
+                                        "radius",
+                                        "bottomRadius",
+                                        "parts",
+                                        "name"};
 
 struct BindingName {
   std::string_view name;
@@ -144,7 +163,7 @@ constexpr UnitName kUnitNames[] = {{"METERS", 1},         {"CENTIMETERS", 1e-2},
 
 /// What nodes change and shapes use.
 struct State {
-  const SceneFloats* points = nullptr;
+  const SceneDoubles* points = nullptr;
   unsigned width = 3;
   SceneAttribute normal{nullptr, 3, SceneBinding::kVertexIndexed, nullptr, false};
   SceneAttribute uv{nullptr, 2, SceneBinding::kVertexIndexed, nullptr, false};
@@ -165,7 +184,7 @@ class InventorReader {
     VKMESH_TRY(graph_, parse_scene(source_, kNodes, kFields, ignored_, file_.notes));
     State state;
     for (const std::uint32_t root : graph_.roots) VKMESH_CHECK(visit(root, state, 0));
-    VKMESH_TRY(file_.geometry, mesh_.finish(file_.notes));
+    VKMESH_TRY(file_.geometry, mesh_.finish(ignored_, file_.notes));
     ignored_.add_to(file_.notes);
     return std::move(file_);
   }
@@ -206,6 +225,18 @@ class InventorReader {
       case kQuadMesh:
       case kPointSet:
         return shape(node, state);
+      case kCube:
+      case kSphere:
+      case kCone:
+      case kCylinder:
+        return primitive(node, state);
+      case kInline: {
+        const SceneField* name = node.field("name");
+        VKMESH_TRY(const bool read, mesh_.add_inline(node, name == nullptr ? std::string_view() : name->text,
+                                                     state.matrix, file_.notes));
+        if (!read) ignored_.add(node.type);
+        return {};
+      }
       case kTransform:
       case kMatrixTransform:
       case kTranslation:
@@ -300,7 +331,7 @@ class InventorReader {
       case kCoordinate3:
       case kCoordinate4: {
         state.width = node.kind == kCoordinate3 ? 3 : 4;
-        VKMESH_TRY(state.points, numbers_.floats(node.field("point"), state.width));
+        VKMESH_TRY(state.points, numbers_.doubles(node.field("point"), state.width));
         return {};
       }
       case kNormal: {
@@ -344,7 +375,7 @@ class InventorReader {
 
   /// Only the fields that hold something replace what the state has.
   Result<void> vertex_property(const SceneNode& node, State& state) {
-    VKMESH_TRY(const SceneFloats* points, numbers_.floats(node.field("vertex"), 3));
+    VKMESH_TRY(const SceneDoubles* points, numbers_.doubles(node.field("vertex"), 3));
     if (points != nullptr && !points->values.empty()) {
       state.points = points;
       state.width = 3;
@@ -361,6 +392,41 @@ class InventorReader {
     if ((colors != nullptr && !colors->values.empty()) || node.field("materialBinding") != nullptr)
       VKMESH_CHECK(bind(node, "materialBinding", SceneBinding::kOverall, state.color));
     return {};
+  }
+
+  /// Whether the `parts` of a primitive have this one.
+  static bool has_part(const SceneNode& node, std::string_view part) {
+    const std::string_view parts = node.word("parts", "ALL");
+    return parts.find("ALL") != std::string_view::npos || parts.find(part) != std::string_view::npos;
+  }
+
+  Result<void> primitive(const SceneNode& node, const State& state) {
+    glm::dvec3 size(2.0);
+    double radius = 1, bottom_radius = 1;
+    VKMESH_CHECK(numbers_.values(node.field("width"), {&size.x, 1}));
+    VKMESH_CHECK(numbers_.values(node.field("height"), {&size.y, 1}));
+    VKMESH_CHECK(numbers_.values(node.field("depth"), {&size.z, 1}));
+    VKMESH_CHECK(numbers_.values(node.field("radius"), {&radius, 1}));
+    VKMESH_CHECK(numbers_.values(node.field("bottomRadius"), {&bottom_radius, 1}));
+    const bool sides = has_part(node, "SIDES"), bottom = has_part(node, "BOTTOM");
+    SceneShape shape;
+    shape.type = node.type;
+    shape.matrix = state.matrix;
+    shape.color = state.color;
+    // Primitives have parts of their own; the first colour stands for all.
+    shape.color.binding = SceneBinding::kOverall;
+    return mesh_.add_primitive(std::move(shape), node, node.kind != kCube, [&] {
+      switch (node.kind) {
+        case kCube:
+          return scene_box(size);
+        case kSphere:
+          return scene_sphere(radius);
+        case kCone:
+          return scene_cylinder(bottom_radius, 0, size.y, sides, bottom, false);
+        default:
+          return scene_cylinder(radius, radius, size.y, sides, bottom, has_part(node, "TOP"));
+      }
+    });
   }
 
   Result<void> shape(const SceneNode& node, const State& outside) {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
+#include <system_error>
+#include <variant>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -58,21 +61,22 @@ Result<std::size_t> SceneMesh::add_block(const SceneShape& shape) {
   const auto [found, is_new] = blocks_.try_emplace({shape.points, key}, mesh_.points.size());
   if (!is_new) return found->second;
 
-  const std::vector<float>& values = shape.points->values;
+  const std::vector<double>& values = shape.points->values;
   const std::size_t count = values.size() / shape.width;
   VKMESH_CHECK(spend(count));
   if (mesh_.points.size() + count > kMaxElements)
     return source_.bad_line(shape.type.data(), "there are more points than 32-bit indices can number");
   const bool moved = !is_identity(shape.matrix);
   for (std::size_t i = 0; i < count; ++i) {
-    const float* row = values.data() + i * shape.width;
-    Vec3 point{row[0], row[1], row[2]};
+    const double* row = values.data() + i * shape.width;
+    DVec3 exact{row[0], row[1], row[2]};
     if (moved || shape.width == 4) {
-      glm::dvec4 p{row[0], row[1], row[2], shape.width == 4 ? row[3] : 1.0f};
+      glm::dvec4 p{exact, shape.width == 4 ? row[3] : 1.0};
       if (moved) p = shape.matrix * p;
-      point = Vec3(glm::dvec3(p) / p.w);
+      exact = DVec3(p) / p.w;
     }
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+    const Vec3 point = source_.positions->place(exact);
+    if (!all_finite(point))
       return numbers_.bad_number(*shape.points, i * shape.width,
                                  "point " + std::to_string(i) + " has a coordinate that is not finite");
     mesh_.points.push_back(point);
@@ -179,7 +183,7 @@ Result<void> SceneMesh::add(const SceneShape& shape, ScenePolygons polygons) {
   for (const std::uint32_t size : polygons.sizes) {
     for (std::uint32_t k = 0; k < size; ++k)
       collector_.corner(static_cast<std::uint32_t>(added.first_point + polygons.points[corner++]));
-    if (!collector_.end_face(size))
+    if (collector_.end_face(size) == FaceCollector::Face::kTooMany)
       return source_.bad_line(shape.type.data(),
                               "the faces have more corners than 32-bit indices can number");
   }
@@ -374,6 +378,138 @@ Result<void> SceneMesh::add_points(const SceneShape& shape, std::int64_t count, 
   return {};
 }
 
+Result<void> SceneMesh::add_primitive(SceneShape shape, const SceneNode& node, bool round,
+                                      const std::function<ScenePrimitive()>& make) {
+  const auto [found, is_new] = made_.try_emplace(&node);
+  Made& made = found->second;
+  if (is_new) {
+    ScenePrimitive primitive = make();
+    made.points = {std::move(primitive.points), node.type};
+    made.index = {std::move(primitive.index), node.type};
+    // The measures of a shape are few bytes: its first use is free.
+    budget_ += 4 * (made.points.values.size() + made.index.values.size());
+    round_shapes_ += round;
+  }
+  shape.points = &made.points;
+  return add_indexed_faces(shape, &made.index);
+}
+
+Result<bool> SceneMesh::add_inline(const SceneNode& node, std::string_view url, const glm::dmat4& matrix,
+                                   Notes& notes) {
+  const auto [found, is_new] = made_.try_emplace(&node);
+  Made& made = found->second;
+  if (is_new) {
+    VKMESH_TRY(made.any, read_inline(node, url, made, notes));
+    budget_ += 4 * (made.points.values.size() + made.index.values.size());
+  }
+  if (!made.any) return false;
+  SceneShape shape;
+  shape.type = node.type;
+  shape.matrix = matrix;
+  shape.points = &made.points;
+  shape.normal = made.normal;
+  shape.uv = made.uv;
+  shape.color = made.color;
+  if (made.index.values.empty())
+    VKMESH_CHECK(add_points(shape, -1, 0));
+  else
+    VKMESH_CHECK(add_indexed_faces(shape, &made.index));
+  return true;
+}
+
+namespace {
+
+/// The first string of a field, without its quotes.
+std::string first_string(std::string_view text) {
+  const std::size_t open = text.find('"');
+  if (open == std::string_view::npos) return {};
+  std::string string;
+  for (std::size_t i = open + 1; i < text.size() && text[i] != '"'; ++i) {
+    if (text[i] == '\\' && i + 1 < text.size()) ++i;
+    string += text[i];
+  }
+  return string;
+}
+
+}  // namespace
+
+Result<bool> SceneMesh::read_inline(const SceneNode& node, std::string_view url, Made& to, Notes& notes) {
+  const std::string name = first_string(url);
+  const auto dropped = [&](const std::string& reason) {
+    notes.push_back({"dropped.inline", "the inlined file '" + name.substr(0, 200) + "' ignored: " + reason});
+    return false;
+  };
+  const std::filesystem::path relative = name;
+  if (name.empty() || name.find("://") != std::string::npos || relative.is_absolute())
+    return dropped("only files beside this one are read");
+  if (relative.lexically_normal().string().starts_with(".."))
+    return dropped("it lies outside the folder of this one");
+  if (source_.folder == nullptr) return dropped("this one was not read from a folder");
+  const std::filesystem::path path = *source_.folder / relative;
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return dropped("there is no such file");
+  constexpr int kDeepest = 8, kMost = 1000;
+  int depth = 0;
+  for (const Source* outer = &source_; outer != nullptr; outer = outer->outer, ++depth)
+    if (std::filesystem::equivalent(path, outer->name, code) || depth == kDeepest)
+      return dropped("files that inline each other");
+  int own_count = 0;
+  int& count = source_.inlines != nullptr ? *source_.inlines : own_count;
+  if (++count > kMost) return dropped("there are more than " + std::to_string(kMost) + " of them");
+
+  VKMESH_TRY(const Content content, read_content(path, {}));
+  const Progress silent;
+  Positions positions;
+  const std::filesystem::path folder = path.parent_path();
+  Source inner{content.bytes.view(), path.string(), silent, 0, &folder};
+  inner.positions = &positions;
+  inner.outer = &source_;
+  inner.inlines = &count;
+  VKMESH_TRY(MeshFile file, parse_format(inner));
+  positions.add_notes(file.notes);
+  for (FileNote& note : file.notes) notes.push_back({note.code, name + ": " + note.sentence});
+  VKMESH_TRY(IndexedFaceSet mesh, vkmesh::to_indexed_face_set(std::move(file)));
+
+  to.points.text = node.type;
+  for (const Vec3& p : mesh.points)
+    for (int axis = 0; axis < 3; ++axis) to.points.values.push_back(static_cast<double>(p[axis]));
+  // Row i of an attribute of corners is that of corner i: its list of rows counts, beside the ends of faces.
+  SceneIndices& in_turn = made_indices_.emplace_back(SceneIndices{{}, node.type});
+  to.index.text = node.type;
+  for (std::size_t f = 0, corner = 0; f < mesh.face_count(); ++f) {
+    for (const std::uint32_t point : mesh.face(f)) {
+      to.index.values.push_back(static_cast<std::int32_t>(point));
+      in_turn.values.push_back(static_cast<std::int32_t>(corner++));
+    }
+    to.index.values.push_back(-1);
+    in_turn.values.push_back(-1);
+  }
+  const auto attribute = [&](const char* channel_name, unsigned components) {
+    SceneAttribute made;
+    const auto take = [&](const std::vector<Channel>& channels, SceneBinding binding,
+                          const SceneIndices* index) {
+      const Channel* channel = find_channel(channels, channel_name);
+      if (channel == nullptr || made.values != nullptr || channel->components < components) return;
+      SceneFloats& values = made_floats_.emplace_back(SceneFloats{{}, node.type});
+      const bool color = channel->name == "color";
+      for (std::size_t i = 0; i < channel->scalar_count(); ++i)
+        values.values.push_back(color ? color_fraction(*channel, i) : channel_float(*channel, i));
+      made = {&values, channel->components, binding, index,
+              color && std::holds_alternative<std::vector<std::uint8_t>>(channel->values)};
+    };
+    take(mesh.corner_channels, SceneBinding::kVertexIndexed, &in_turn);
+    take(mesh.point_channels, SceneBinding::kVertexIndexed, nullptr);
+    take(mesh.face_channels, SceneBinding::kFace, nullptr);
+    made.components = std::max(made.components, components);
+    return made;
+  };
+  to.normal = attribute("normal", 3);
+  to.uv = attribute("uv", 2);
+  to.color = attribute("color", 3);
+  if (to.uv.values == nullptr) to.uv.components = 2;
+  return true;
+}
+
 void SceneMesh::put_row(const Shape& shape, std::size_t which, std::size_t row, unsigned components,
                         float* to) const {
   const Kept& kept = shape.kept[which];
@@ -448,8 +584,9 @@ void SceneMesh::keep(std::size_t which, Notes& notes) {
     face += shape.faces;
   }
   if (left_out > 0)
-    notes.push_back(std::string(kPlurals[which]) + " of " + std::to_string(left_out) +
-                    " point sets ignored: the faces have them in another way");
+    notes.push_back({std::string("dropped.") + kNames[which],
+                     std::string(kPlurals[which]) + " of " + std::to_string(left_out) +
+                         " point sets ignored: the faces have them in another way"});
   Channel channel{kNames[which], components, std::move(values)};
   if (which == kColor && bytes) {
     std::vector<std::uint8_t> rounded(channel.scalar_count());
@@ -462,19 +599,29 @@ void SceneMesh::keep(std::size_t which, Notes& notes) {
       .push_back(std::move(channel));
 }
 
-Result<IndexedFaceSet> SceneMesh::finish(Notes& notes) {
-  if (!any_shape_)
-    return fail(ErrorCode::kUnreadable, "the file holds neither polygons nor points", {source_.name, {}, {}});
-  if (levels_ > 0) notes.push_back(std::to_string(levels_) + " levels of detail but the first ignored");
+Result<IndexedFaceSet> SceneMesh::finish(const IgnoredNodes& ignored, Notes& notes) {
+  if (!any_shape_) {
+    const std::string what = ignored.text();
+    return fail(ErrorCode::kUnreadable,
+                "the file holds neither polygons nor points" +
+                    (what.empty() ? std::string() : " (nodes ignored: " + what + ")"),
+                {source_.name, {}, {}});
+  }
+  if (levels_ > 0)
+    notes.push_back({"dropped.levels", std::to_string(levels_) + " levels of detail but the first ignored"});
   if (unchosen_ > 0)
-    notes.push_back(std::to_string(unchosen_) + " children that a 'Switch' does not choose ignored");
+    notes.push_back(
+        {"dropped.switch", std::to_string(unchosen_) + " children that a 'Switch' does not choose ignored"});
   for (std::size_t which = 0; which < 3; ++which) keep(which, notes);
   for (std::size_t which = 0; which < 3; ++which)
     if (dropped_[which] > 0)
-      notes.push_back(std::string(kPlurals[which]) + " of " + std::to_string(dropped_[which]) +
-                      " shapes ignored: there are too few for them");
-  if (small_faces_ > 0)
-    notes.push_back(std::to_string(small_faces_) + " faces or strips of fewer than 3 corners ignored");
+      notes.push_back({std::string("skipped.") + kNames[which],
+                       std::string(kPlurals[which]) + " of " + std::to_string(dropped_[which]) +
+                           " shapes ignored: there are too few for them"});
+  note_small_faces(notes, small_faces_);
+  if (round_shapes_ > 0)
+    notes.push_back({"rounded.primitives",
+                     std::to_string(round_shapes_) + " spheres, cones and cylinders read as polygons"});
   return std::move(mesh_);
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -19,6 +21,7 @@
 
 #include "io/formats.h"
 #include "io/inventor/scene_graph.h"
+#include "io/inventor/scene_primitives.h"
 
 namespace vkmesh::detail {
 
@@ -57,7 +60,7 @@ struct ScenePolygons {
 /// What shapes have in common whichever node they come from.
 struct SceneShape {
   std::string_view type;  ///< Of the node, which stands where errors point.
-  const SceneFloats* points = nullptr;
+  const SceneDoubles* points = nullptr;
   unsigned width = 3;  ///< 4: homogeneous.
   glm::dmat4 matrix{1.0};
   bool clockwise = false;
@@ -96,8 +99,16 @@ class SceneMesh {
   /// Points alone; count -1 takes all that are left.
   [[nodiscard]] Result<void> add_points(const SceneShape& shape, std::int64_t count, std::int64_t start);
 
-  /// The mesh, with its notes.
-  [[nodiscard]] Result<IndexedFaceSet> finish(Notes& notes);
+  /// A shape that is given by its measures; made once for each node. `round`: polygons only come near it.
+  [[nodiscard]] Result<void> add_primitive(SceneShape shape, const SceneNode& node, bool round,
+                                           const std::function<ScenePrimitive()>& make);
+  /// What the file beside this one holds that a node names, read once for each node. Whether there is one:
+  /// the reason why not goes to the notes.
+  [[nodiscard]] Result<bool> add_inline(const SceneNode& node, std::string_view url, const glm::dmat4& matrix,
+                                        Notes& notes);
+
+  /// The mesh, with its notes. Errors: kUnreadable where there is none; the message says what was ignored.
+  [[nodiscard]] Result<IndexedFaceSet> finish(const IgnoredNodes& ignored, Notes& notes);
 
  private:
   enum class Form { kNone, kOverall, kFace, kCorner, kPoint };
@@ -139,11 +150,25 @@ class SceneMesh {
   FaceCollector collector_{mesh_};
   std::vector<Shape> shapes_;
   /// Where the points of an array under a transform begin.
-  std::map<std::pair<const SceneFloats*, std::array<double, 16>>, std::size_t> blocks_;
+  std::map<std::pair<const SceneDoubles*, std::array<double, 16>>, std::size_t> blocks_;
   std::array<std::size_t, 3> dropped_{};  ///< Shapes whose attribute has too few values.
   std::size_t small_faces_ = 0;
   std::size_t visits_ = 0, levels_ = 0, unchosen_ = 0;
   bool any_shape_ = false;
+
+  /// Arrays of shapes whose numbers are not in this file.
+  struct Made {
+    SceneDoubles points;
+    SceneIndices index;
+    SceneAttribute normal, uv, color;
+    bool any = false;
+  };
+  std::map<const SceneNode*, Made> made_;
+  std::deque<SceneFloats> made_floats_;
+  std::deque<SceneIndices> made_indices_;
+  std::size_t round_shapes_ = 0;
+
+  [[nodiscard]] Result<bool> read_inline(const SceneNode& node, std::string_view url, Made& to, Notes& notes);
 };
 
 }  // namespace vkmesh::detail

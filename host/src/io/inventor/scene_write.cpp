@@ -42,8 +42,6 @@ class SceneWriter {
       write_vrml2();
     else
       write_inventor();
-    if (not_finite_ > 0)
-      notes_.push_back(std::to_string(not_finite_) + " attribute values that are not finite written as 0");
   }
 
  private:
@@ -81,7 +79,8 @@ class SceneWriter {
         color_.packed = true;
         color_.width = 4;
       } else {
-        notes_.push_back("opacities of colours left out: written are red, green and blue");
+        notes_.push_back(
+            {"dropped.opacities", "opacities of colours left out: written are red, green and blue"});
       }
     }
     const std::string reason = vrml2 && is_cloud()
@@ -109,10 +108,6 @@ class SceneWriter {
         row[k] = attribute.packed        ? static_cast<float>(color_byte(channel, at))
                  : &attribute == &color_ ? color_fraction(channel, at)
                                          : channel_float(channel, at);
-        if (!std::isfinite(row[k])) {
-          row[k] = 0;
-          ++not_finite_;
-        }
       }
       return row;
     };
@@ -137,7 +132,12 @@ class SceneWriter {
   void put_points() {
     for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
       out_.put(i == 0 ? "\n" : ",\n");
-      put_row(&mesh_.points[i].x, 3);
+      char* to = out_.room(256);
+      for (int axis = 0; axis < 3; ++axis) {
+        *to++ = ' ';
+        to = put_coordinate(to, mesh_.points[i][axis], options_.offset[axis]);
+      }
+      out_.commit(to);
     }
   }
 
@@ -260,7 +260,6 @@ class SceneWriter {
   Output& out_;
   Notes& notes_;
   OutAttribute normal_, uv_, color_;
-  std::size_t not_finite_ = 0;
 };
 
 }  // namespace

@@ -21,9 +21,7 @@
 namespace vkmesh::detail {
 namespace {
 
-// Keywords that are passed over. Those of the second list may go on over several lines.
-constexpr std::array<std::string_view, 9> kNames = {
-    "s", "mg", "mtllib", "usemap", "maplib", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+// Known keywords whose statements may go on over several lines; those of others end with their line.
 constexpr std::array<std::string_view, 24> kIgnored = {
     "p",    "l",    "vp", "deg", "bmat", "step",  "cstype", "curv",  "curv2", "surf", "parm", "trim",
     "hole", "scrv", "sp", "end", "con",  "bevel", "lod",    "ctech", "stech", "bzp",  "bsp",  "cdc"};
@@ -39,8 +37,8 @@ struct Attribute {
   std::string channel;
   unsigned components = 0;
   std::vector<float> values;
-  std::vector<std::uint32_t> of_corner;  ///< kept while every corner names one.
-  std::size_t with = 0;                  ///< Corners that name one.
+  std::vector<std::uint32_t> of_corner;  ///< kInvalid, or nothing at the end, where a corner names none.
+  std::size_t wrong = 0;                 ///< Corners that name one that there is not.
 
   [[nodiscard]] std::size_t count() const { return values.size() / components; }
 };
@@ -121,26 +119,50 @@ class ObjReader {
         for (int k = 0; k < 3; ++k) VKMESH_CHECK(value("a normal", normal_.values));
       } else if (keyword == "usemtl") {
         materials_.set(name(), faces_);
-      } else if (keyword == "g" || keyword == "o") {
+      } else if (keyword == "o") {
+        objects_.set(name(), faces_);
+      } else if (keyword == "g") {
         groups_.set(name(), faces_);
-      } else if (is_one_of(keyword, kNames)) {
-        ++ignored_[keyword];
-        text_.skip_to_line_end();
+      } else if (keyword == "mtllib") {
+        if (const std::string_view library = name(); !library.empty())
+          file_.material_libraries.emplace_back(library);
       } else if (is_one_of(keyword, kIgnored)) {
         ++ignored_[keyword];
         skip_statement();
       } else {
-        return source_.bad_line(at, "unknown keyword " + TextCursor(keyword).found());
+        // Known or not: files of archives and of newer programs have more than the manual lists.
+        const auto known = ignored_.find(keyword);
+        if (known != ignored_.end())
+          ++known->second;
+        else if (ignored_.size() < kKeywords)
+          ignored_[keyword] = 1;
+        else
+          ++other_keywords_;
+        text_.skip_to_line_end();
       }
       skip_continuation();
       if (!text_.line_done()) return expected("the end of the line");
     }
-    if (mesh.points.empty()) return source_.bad_line(text_.at(), "the file holds no vertex");
+    if (mesh.points.empty()) return source_.bad_line(text_.at(), "the file holds no vertex" + skipped());
     VKMESH_CHECK(finish(mesh));
     return std::move(file_);
   }
 
  private:
+  static constexpr float kNoColor = -1e30f;     ///< Stands for the colour of a vertex that has none.
+  static constexpr std::size_t kKeywords = 64;  ///< Ignored ones that are told by name.
+
+  /// " (skipped: 3 'foo' lines)", so that a file refused as empty says what it held.
+  std::string skipped() const {
+    std::string text;
+    std::size_t shown = 0;
+    for (const auto& [keyword, count] : ignored_)
+      if (shown++ < 3)
+        text += (text.empty() ? " (skipped: " : ", ") + std::to_string(count) + " " +
+                TextCursor(keyword).found() + (count == 1 ? " line" : " lines");
+    return text.empty() ? text : text + (shown > 3 ? ", …)" : ")");
+  }
+
   tl::unexpected<Error> expected(const std::string& what) {
     skip_continuation();
     return source_.bad_line(text_.at(), "expected " + what + ", found " + text_.found());
@@ -161,12 +183,15 @@ class ObjReader {
     }
   }
 
-  /// The rest of the line, which may be several words.
+  /// The rest of the line, which may be several words; names may begin with #. A # alone begins a comment.
   std::string_view name() {
-    text_.skip_blanks();
-    const char* from = text_.at();
+    TextCursor words(rest(text_.at()));
+    words.skip_blanks();
+    const char* from = words.at();
     const char* to = from;
-    while (!text_.word().empty()) to = text_.at();
+    for (std::string_view word = words.word(); !word.empty() && word != "#"; word = words.word())
+      to = words.at();
+    text_.skip_to_line_end();
     return {from, static_cast<std::size_t>(to - from)};
   }
 
@@ -179,7 +204,8 @@ class ObjReader {
   }
 
   /// A number of this statement, which may stand on the next line.
-  bool number(float& to) {
+  template <class T>
+  bool number(T& to) {
     skip_continuation();
     return text_.number_prefix(to) && ends_number();
   }
@@ -187,7 +213,7 @@ class ObjReader {
   bool ends_number() const {
     if (text_.at_line_end()) return true;
     const char c = *text_.at();
-    return c == ' ' || c == '\t' || c == '\\' || c == '#' || c == '\v' || c == '\f';
+    return c == ' ' || c == '\t' || c == '\\' || c == '\v' || c == '\f';
   }
 
   bool statement_done() {
@@ -203,11 +229,11 @@ class ObjReader {
   }
 
   Result<void> vertex(const char* at, IndexedFaceSet& mesh) {
-    Vec3 point;
+    DVec3 exact;
     for (int axis = 0; axis < 3; ++axis)
-      if (!number(point[axis])) return expected(std::string("coordinate ") + "xyz"[axis]);
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
-      return source_.bad_line(at, "a coordinate is not finite");
+      if (!number(exact[axis])) return expected(std::string("coordinate ") + "xyz"[axis]);
+    const Vec3 point = source_.positions->place(exact);
+    if (!all_finite(point)) not_finite_.add(mesh.points.size(), at);
     if (mesh.points.size() == kMaxElements)
       return source_.bad_line(at, "there are more vertices than 32-bit indices can number");
     mesh.points.push_back(point);
@@ -218,6 +244,8 @@ class ObjReader {
     for (; count < more.size() && !statement_done(); ++count)
       if (!number(more[count])) return expected("a number");
     if (count == 3 || count == 4) {
+      colors_.resize(3 * (mesh.points.size() - 1), kNoColor);
+      ++colored_;
       for (std::size_t k = 0; k < 3; ++k) {
         colors_.push_back(more[k]);
         whole_colors_ = whole_colors_ && more[k] == std::floor(more[k]) && more[k] >= 0 && more[k] <= 255;
@@ -261,14 +289,25 @@ class ObjReader {
     return true;
   }
 
-  Result<void> corner_attribute(Attribute& attribute, Highest& highest, std::size_t corner) {
-    std::uint32_t i = 0;
+  /// Sets the attribute of a corner. One that cannot be named (0, or before the first) costs it, not the
+  /// face.
+  Result<void> corner_attribute(Attribute& attribute, std::size_t corner) {
+    std::int64_t i = 0;
     const char* at = text_.at();
-    if (!index(attribute.count(), i, highest))
+    if (!text_.number_prefix(i))
       return source_.bad_line(at, std::string("expected the index of a '") + attribute.keyword +
                                       "' line, found " + TextCursor(rest(at)).found());
-    if (attribute.of_corner.size() == corner) attribute.of_corner.push_back(i);
-    ++attribute.with;
+    if (i < 0)
+      i = i < -static_cast<std::int64_t>(kMaxElements)
+              ? 0
+              : std::max<std::int64_t>(0, static_cast<std::int64_t>(attribute.count()) + i + 1);
+    attribute.of_corner.resize(corner, kInvalid);
+    if (i == 0 || i > static_cast<std::int64_t>(kMaxElements)) {
+      ++attribute.wrong;
+      attribute.of_corner.push_back(kInvalid);
+    } else {
+      attribute.of_corner.push_back(static_cast<std::uint32_t>(i - 1));
+    }
     return {};
   }
 
@@ -289,18 +328,26 @@ class ObjReader {
       collector.corner(point);
       if (text_.accept('/')) {
         const bool uv = !ends_number() && *text_.at() != '/';
-        if (uv) VKMESH_CHECK(corner_attribute(uv_, highest_uv_, corner));
-        if (text_.accept('/') && !ends_number())
-          VKMESH_CHECK(corner_attribute(normal_, highest_normal_, corner));
+        if (uv) VKMESH_CHECK(corner_attribute(uv_, corner));
+        if (text_.accept('/') && !ends_number()) VKMESH_CHECK(corner_attribute(normal_, corner));
       }
       if (!ends_number())
         return source_.bad_line(at, "expected a corner, found " + TextCursor(rest(at)).found());
     }
-    if (count < 3) return source_.bad_line(line, "a face has " + std::to_string(count) + " corners");
-    if (!collector.end_face(count))
-      return source_.bad_line(line, "the faces have more corners than 32-bit indices can number");
+    switch (collector.end_face(count)) {
+      case FaceCollector::Face::kTooMany:
+        return source_.bad_line(line, "the faces have more corners than 32-bit indices can number");
+      case FaceCollector::Face::kSkipped:
+        ++small_faces_;
+        for (Attribute* attribute : {&uv_, &normal_})
+          attribute->of_corner.resize(std::min(attribute->of_corner.size(), mesh.corners.size()));
+        return {};
+      case FaceCollector::Face::kKept:
+        break;
+    }
     ++faces_;
     materials_.add_face();
+    objects_.add_face();
     groups_.add_face();
     return {};
   }
@@ -314,61 +361,88 @@ class ObjReader {
 
   Result<void> finish(IndexedFaceSet& mesh) {
     VKMESH_CHECK(check(highest_point_, mesh.points.size(), "v"));
-    VKMESH_CHECK(check(highest_uv_, uv_.count(), "vt"));
-    VKMESH_CHECK(check(highest_normal_, normal_.count(), "vn"));
     keep(uv_, mesh);
     keep(normal_, mesh);
-    materials_.keep("material", mesh);
-    groups_.keep("group", mesh);
     if (!colors_.empty()) {
-      if (colors_.size() == 3 * mesh.points.size())
-        mesh.point_channels.push_back(color_channel(std::move(colors_), 3, whole_colors_));
-      else
-        file_.notes.push_back("colours of " + std::to_string(colors_.size() / 3) +
-                              " vertices ignored: not all vertices have one");
+      if (colored_ < mesh.points.size())
+        file_.notes.push_back({"partial.color", std::to_string(mesh.points.size() - colored_) +
+                                                    " vertices without a colour made white"});
+      colors_.resize(3 * mesh.points.size(), kNoColor);
+      const float largest = *std::max_element(colors_.begin(), colors_.end());
+      std::replace(colors_.begin(), colors_.end(), kNoColor, largest > 1 ? 255.0f : 1.0f);
+      mesh.point_channels.push_back(color_channel(std::move(colors_), 3, whole_colors_));
     }
-    const auto note = [&](std::size_t count, const std::string& what) {
-      if (count > 0) file_.notes.push_back(std::to_string(count) + " " + what + " ignored");
+    VKMESH_CHECK(not_finite_.drop(source_, false, mesh, file_.notes));
+    materials_.keep("material", mesh);
+    objects_.keep("object", mesh);
+    groups_.keep("group", mesh);
+    const auto note = [&](std::size_t count, const char* code, const std::string& what) {
+      if (count > 0) file_.notes.push_back({code, std::to_string(count) + " " + what + " ignored"});
     };
-    note(weights_, "vertex weights");
-    note(alphas_, "vertex opacities");
-    note(thirds_, "third texture coordinates");
-    for (const auto& [keyword, count] : ignored_) note(count, "'" + std::string(keyword) + "' lines");
+    note_small_faces(file_.notes, small_faces_);
+    note(weights_, "dropped.weights", "vertex weights");
+    note(alphas_, "dropped.opacities", "vertex opacities");
+    note(thirds_, "dropped.uvw", "third texture coordinates");
+    for (const auto& [keyword, count] : ignored_)
+      note(count, "skipped.keyword", TextCursor(keyword).found() + " lines");
+    note(other_keywords_, "skipped.keyword", "lines of other keywords");
     return {};
   }
 
-  /// Attributes of corners become a channel when every corner has one: of points when point i has the i-th,
-  /// in all its corners, else of corners.
+  /// Attributes of corners become a channel: of points when point i has the i-th in all its corners, else of
+  /// corners. Corners that name none get 0.
   void keep(Attribute& attribute, IndexedFaceSet& mesh) {
-    if (attribute.count() == 0) return;
-    const bool each =
-        attribute.with == mesh.corners.size() && attribute.of_corner.size() == mesh.corners.size();
-    if (each && attribute.count() == mesh.points.size() && attribute.of_corner == mesh.corners) {
-      mesh.point_channels.push_back({attribute.channel, attribute.components, std::move(attribute.values)});
-    } else if (each) {
-      std::vector<float> values;
-      values.reserve(attribute.of_corner.size() * attribute.components);
-      for (const std::size_t i : attribute.of_corner)
-        for (unsigned k = 0; k < attribute.components; ++k)
-          values.push_back(attribute.values[i * attribute.components + k]);
-      mesh.corner_channels.push_back({attribute.channel, attribute.components, std::move(values)});
-    } else {
-      file_.notes.push_back(std::to_string(attribute.count()) + " '" + attribute.keyword +
-                            "' lines ignored: not every corner of a face names one");
+    const std::string lines = std::string("'") + attribute.keyword + "' lines";
+    if (attribute.of_corner.empty()) {
+      if (attribute.count() > 0)
+        file_.notes.push_back(
+            {"dropped.unused_" + attribute.channel,
+             std::to_string(attribute.count()) + " " + lines + " ignored: no corner of a face names one"});
+      return;
     }
+    attribute.of_corner.resize(mesh.corners.size(), kInvalid);
+    std::size_t without = 0;
+    for (std::uint32_t& i : attribute.of_corner) {
+      if (i != kInvalid && i >= attribute.count()) {
+        i = kInvalid;
+        ++attribute.wrong;
+      }
+      without += i == kInvalid;
+    }
+    if (attribute.wrong > 0)
+      file_.notes.push_back(
+          {"skipped." + attribute.channel + "_index",
+           std::to_string(attribute.wrong) + " corners name " + lines + " that there are not"});
+    if (without == attribute.of_corner.size()) return;
+    if (without > 0)
+      file_.notes.push_back({"partial." + attribute.channel,
+                             std::to_string(without) + " corners without '" + attribute.channel + "' got 0"});
+    if (attribute.count() == mesh.points.size() && attribute.of_corner == mesh.corners) {
+      mesh.point_channels.push_back({attribute.channel, attribute.components, std::move(attribute.values)});
+      return;
+    }
+    std::vector<float> values;
+    values.reserve(attribute.of_corner.size() * attribute.components);
+    for (const std::size_t i : attribute.of_corner)
+      for (unsigned k = 0; k < attribute.components; ++k)
+        values.push_back(i == kInvalid ? 0.0f : attribute.values[i * attribute.components + k]);
+    mesh.corner_channels.push_back({attribute.channel, attribute.components, std::move(values)});
   }
 
   const Source& source_;
   TextCursor text_;
   MeshFile file_;
   Attribute uv_, normal_;
-  Highest highest_point_, highest_uv_, highest_normal_;
-  FaceLabels materials_, groups_;
-  std::size_t faces_ = 0;
-  std::vector<float> colors_;
+  Highest highest_point_;
+  NonFinitePoints not_finite_;
+  FaceLabels materials_, objects_, groups_;
+  std::size_t faces_ = 0, small_faces_ = 0;
+  std::vector<float> colors_;  ///< Of the vertices up to the last that has one.
+  std::size_t colored_ = 0;
   bool whole_colors_ = true;
   std::size_t weights_ = 0, alphas_ = 0, thirds_ = 0;
   std::map<std::string_view, std::size_t> ignored_;
+  std::size_t other_keywords_ = 0;
 };
 
 /// The names of faces, for the writer.
@@ -398,8 +472,10 @@ class OutLabels {
   /// What a line can hold and a reader gets back.
   static bool is_name(const std::string& label) {
     const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+    // A # alone begins a comment, a \ goes on in the next line.
     return std::none_of(label.begin(), label.end(),
-                        [](char c) { return c == '#' || c == '\\' || (c >= 0 && c < ' ' && c != '\t'); }) &&
+                        [](char c) { return c == '\\' || (c >= 0 && c < ' ' && c != '\t'); }) &&
+           (" " + label + " ").find(" # ") == std::string::npos &&
            (label.empty() || (!blank(label.front()) && !blank(label.back())));
   }
 
@@ -488,25 +564,26 @@ void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
   const Channel* color = find_channel(mesh.point_channels, "color");
   if (color != nullptr && color->components != 3 && color->components != 4) color = nullptr;
   if (color != nullptr && color->components == 4)
-    notes.push_back("vertex opacities left out: OBJ holds none");
+    notes.push_back({"dropped.opacities", "vertex opacities left out: OBJ holds none"});
   for (const Channel& c : mesh.point_channels)
     if (&c != uv.of_points && &c != normal.of_points && &c != color)
       note_left_out(notes, "point", c, "OBJ holds normals, uv and colours");
   for (const Channel& c : mesh.corner_channels)
     if (&c != uv.of_corners && &c != normal.of_corners)
       note_left_out(notes, "corner", c, "OBJ holds normals and uv of corners");
-  OutLabels material("usemtl", "material", mesh), group("g", "group", mesh);
+  OutLabels material("usemtl", "material", mesh), object("o", "object", mesh), group("g", "group", mesh);
   for (const Channel& c : mesh.face_channels)
-    if (&c != material.channel() && &c != group.channel())
-      note_left_out(notes, "face", c, "OBJ holds names of materials and groups of faces");
+    if (&c != material.channel() && &c != object.channel() && &c != group.channel())
+      note_left_out(notes, "face", c, "OBJ holds names of materials, objects and groups of faces");
 
   for (const std::string& line : comment_lines(options.comment)) out.put("# " + line + "\n");
+  for (const std::string& library : options.material_libraries) out.put("mtllib " + library + "\n");
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     char* to = out.room(256);
     *to++ = 'v';
     for (int axis = 0; axis < 3; ++axis) {
       *to++ = ' ';
-      to = put_number(to, mesh.points[i][axis]);
+      to = put_coordinate(to, mesh.points[i][axis], options.offset[axis]);
     }
     for (unsigned k = 0; color != nullptr && k < 3; ++k) {
       *to++ = ' ';
@@ -518,6 +595,7 @@ void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
   uv.put_rows(mesh, out);
   normal.put_rows(mesh, out);
   for (std::size_t f = 0, corner = 0; f < mesh.face_count(); ++f) {
+    object.put(f, out);
     group.put(f, out);
     material.put(f, out);
     out.put("f");

@@ -44,9 +44,10 @@ class HeaderReader {
       if (!text_.line_done()) return unexpected("the end of the line");
     }
     if (!format_seen) return source_.bad_line(text_.at(), "the header gives no format");
-    // The body begins after one line end of the kind that the first line has: what follows it may be data.
-    if (carriage_return) text_.accept('\r');
-    if (line_feed) text_.accept('\n');
+    // The body begins after one line end: what follows it may be data. Only a file whose first line ends with
+    // a carriage return alone has line ends of that kind.
+    const bool here = text_.accept('\r');
+    if (!(here && carriage_return && !line_feed)) text_.accept('\n');
     header_.body = text_.at();
     return std::move(header_);
   }

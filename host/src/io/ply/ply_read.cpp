@@ -81,7 +81,8 @@ std::vector<Group> group_properties(const Element& element, std::set<const Prope
   for (const Property& p : element.properties) {
     if (taken.contains(&p)) continue;
     if (p.list) {
-      notes.push_back("list property '" + p.name + "' of element '" + element.name + "' ignored");
+      notes.push_back(
+          {"dropped." + p.name, "list property '" + p.name + "' of element '" + element.name + "' ignored"});
       continue;
     }
     if (p.name.size() > 2 && p.name.ends_with("_0")) {
@@ -98,8 +99,8 @@ std::vector<Group> group_properties(const Element& element, std::set<const Prope
     if (components_fit(p.name, 1) && !named(p.name))
       add({p.name, {&p}});
     else
-      notes.push_back("property '" + p.name + "' of element '" + element.name +
-                      "' ignored: its name stands for something else here");
+      notes.push_back({"dropped." + p.name, "property '" + p.name + "' of element '" + element.name +
+                                                "' ignored: its name stands for something else here"});
   }
   return groups;
 }
@@ -109,6 +110,7 @@ struct Sink {
   std::byte* to = nullptr;
   std::size_t stride = 0;
   bool to_float = false;  ///< Coordinates become floats; all else keeps its type.
+  int axis = -1;          ///< Of a coordinate that is placed in double precision.
 };
 
 template <class T>
@@ -132,7 +134,7 @@ void make_channels(const Element& element, const std::vector<Group>& groups, std
     if (element.count == 0) continue;  // An empty vector has no data to point into.
     for (std::size_t k = 0; k < components; ++k) {
       const auto place = static_cast<std::size_t>(groups[g].properties[k] - element.properties.data());
-      sinks[place] = {data + k * size_of(type), components * size_of(type), false};
+      sinks[place] = {data + k * size_of(type), components * size_of(type), false, -1};
     }
   }
 }
@@ -149,9 +151,22 @@ class AsciiBody {
   [[nodiscard]] const char* at() const { return text_.at(); }
   [[nodiscard]] std::uint64_t left() const { return text_.left(); }
   void begin_element() { text_.skip_to_content(); }
+  /// Some writers print whole numbers with a point.
   template <class T>
   bool scalar(T& value) {
-    return text_.number(value);
+    if (text_.number(value)) return true;
+    if constexpr (std::is_integral_v<T>) {
+      const TextCursor before = text_;
+      double number = 0;
+      if (text_.number(number) && number >= std::numeric_limits<T>::min() &&
+          number <= std::numeric_limits<T>::max() && number == std::floor(number)) {
+        value = static_cast<T>(number);
+        return true;
+      }
+      text_ = before;
+      text_.skip_blanks();
+    }
+    return false;
   }
   bool end_element() { return text_.line_done(); }
   /// Passes over elements whose values nobody wants.
@@ -319,6 +334,19 @@ struct Part {
   std::uint64_t skip = 0, first = 0, last = 0;
 };
 
+/// What the points of a part were like.
+struct PartPoints {
+  Positions placed;
+  NonFinitePoints not_finite;
+};
+
+/// What the faces of a part had beside their points.
+struct PartFaces {
+  std::vector<std::uint64_t> skipped;  ///< Those of fewer than three corners.
+  std::vector<float> uv;               ///< Of each corner.
+  std::size_t without_uv = 0;          ///< Corners.
+};
+
 template <class Body>
 class BodyReader {
  public:
@@ -339,11 +367,19 @@ class BodyReader {
         VKMESH_CHECK(vertices(element));
       else if (element.name == "face")
         VKMESH_CHECK(faces(element));
+      else if (element.name == "tristrips")
+        VKMESH_CHECK(strips(element));
       else
         VKMESH_CHECK(other(element));
       if (!element.properties.empty()) lines_ += element.count;
     }
-    return body_.end();
+    VKMESH_CHECK(body_.end());
+    IndexedFaceSet& mesh = std::get<IndexedFaceSet>(file_.geometry);
+    if (mesh.corners.empty() && unknown_faces_ != nullptr)
+      return source_.bad_line(unknown_faces_->at, "the only faces stand in element '" + unknown_faces_->name +
+                                                      "', which is not known");
+    if (source_.positions != nullptr) source_.positions->add(placed_);
+    return not_finite_.drop(source_, !Body::kAscii, mesh, file_.notes);
   }
 
  private:
@@ -424,9 +460,10 @@ class BodyReader {
   }
 
   Result<void> scalar(Body& body, const Element& element, std::uint64_t i, const Property& p,
-                      const Sink& sink) const {
+                      const Sink& sink, DVec3& exact) const {
     return with_type(p.type, [&](auto value) -> Result<void> {
       if (!body.scalar(value)) return body.bad(element, i, p);
+      if (sink.axis >= 0) exact[sink.axis] = static_cast<double>(value);
       if (sink.to == nullptr) return {};
       std::byte* to = sink.to + i * sink.stride;
       if (sink.to_float) {
@@ -473,38 +510,58 @@ class BodyReader {
                                 std::string("element 'vertex' has no scalar property '") + name + "'");
       taken.insert(p);
     }
+    const bool moved = source_.offset != DVec3(0.0);
     if constexpr (!Body::kAscii)
-      if (is_packed_floats(element)) return packed_points(mesh.points);
+      if (is_packed_floats(element) && !moved) return packed_points(mesh.points);
+    // Floats lose nothing where they are.
+    const bool exact = moved || std::any_of(taken.begin(), taken.end(),
+                                            [](const Property* p) { return p->type != Scalar::kFloat; });
 
     std::vector<Sink> sinks(element.properties.size());
     mesh.points.resize(element.count);
     for (const Property* p : taken)
       if (element.count > 0)
-        sinks[static_cast<std::size_t>(p - element.properties.data())] = {
-            reinterpret_cast<std::byte*>(mesh.points.data()) +
-                static_cast<std::size_t>(p->name[0] - 'x') * sizeof(float),
-            sizeof(Vec3), true};
+        sinks[static_cast<std::size_t>(p - element.properties.data())] =
+            exact ? Sink{nullptr, 0, false, p->name[0] - 'x'}
+                  : Sink{reinterpret_cast<std::byte*>(mesh.points.data()) +
+                             static_cast<std::size_t>(p->name[0] - 'x') * sizeof(float),
+                         sizeof(Vec3), true, -1};
     make_channels(element, group_properties(element, std::move(taken), file_.notes), mesh.point_channels,
                   sinks);
 
-    const auto rows = [&](Body& body, std::uint64_t first, std::uint64_t last, std::size_t) -> Result<void> {
+    const auto parts = parts_of(element);
+    std::vector<PartPoints> points_of(parts.size() + 1, PartPoints{Positions(source_.offset), {}});
+    const auto rows = [&](Body& body, std::uint64_t first, std::uint64_t last,
+                          std::size_t part) -> Result<void> {
+      PartPoints& seen = points_of[part];
       for (std::uint64_t i = first; i < last; ++i) {
         body.begin_element();
         const char* at = body.at();
+        DVec3 coordinates;
         for (std::size_t k = 0; k < element.properties.size(); ++k) {
           const Property& p = element.properties[k];
-          VKMESH_CHECK(p.list ? skip_list(body, element, i, p) : scalar(body, element, i, p, sinks[k]));
+          VKMESH_CHECK(p.list ? skip_list(body, element, i, p)
+                              : scalar(body, element, i, p, sinks[k], coordinates));
         }
-        if (!is_finite(mesh.points[i])) return not_finite(body, at, i);
+        if (exact) mesh.points[i] = seen.placed.place(coordinates);
+        if (!all_finite(mesh.points[i])) seen.not_finite.add(i, at);
         if (!body.end_element()) return body.bad_end(element);
       }
       return {};
     };
-    if (const auto parts = parts_of(element); parts.size() > 1) {
-      VKMESH_TRY(const bool whole, in_parts(parts, rows));
-      if (whole) return {};
+    bool whole = false;
+    if (parts.size() > 1) {
+      VKMESH_TRY(whole, in_parts(parts, rows));
     }
-    return in_order(element, 0, rows);
+    if (!whole) {
+      points_of.assign(1, PartPoints{Positions(source_.offset), {}});
+      VKMESH_CHECK(in_order(element, 0, rows));
+    }
+    for (const PartPoints& seen : points_of) {
+      placed_.add(seen.placed);
+      not_finite_.add(seen.not_finite);
+    }
+    return {};
   }
 
   static bool is_packed_floats(const Element& element) {
@@ -528,23 +585,14 @@ class BodyReader {
         for (int axis = 0; axis < 3; ++axis)
           piece[i][axis] =
               Body::template value_at<float>(at + static_cast<std::size_t>(axis) * sizeof(float));
-        finite = finite && is_finite(piece[i]);
+        finite = finite && all_finite(piece[i]);
       }
       for (std::size_t i = 0; i < count && !finite; ++i)
-        if (!is_finite(piece[i])) return not_finite(body_, body_.at() + i * sizeof(Vec3), points.size() + i);
+        if (!all_finite(piece[i])) not_finite_.add(points.size() + i, body_.at() + i * sizeof(Vec3));
       points.insert(points.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(count));
       body_.advance(count * sizeof(Vec3));
     }
     return {};
-  }
-
-  static bool is_finite(const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  }
-
-  static tl::unexpected<Error> not_finite(const Body& body, const char* at, std::uint64_t i) {
-    return body.bad(at,
-                    "vertex " + std::to_string(i) + " has a coordinate that is not finite as a 32-bit float");
   }
 
   Result<void> faces(const Element& element) {
@@ -556,19 +604,29 @@ class BodyReader {
       return source_.bad_line(element.at,
                               "element 'face' has no list of integers 'vertex_indices' or 'vertex_index'");
     }
+    // MeshLab and others give corners their texture coordinates so.
+    const Property* wedges = element.find("texcoord");
+    if (wedges != nullptr && (!wedges->list || is_integer(wedges->type))) wedges = nullptr;
     std::vector<Sink> sinks(element.properties.size());
-    make_channels(element, group_properties(element, {indices}, file_.notes), mesh.face_channels, sinks);
+    std::set<const Property*> taken = {indices};
+    if (wedges != nullptr) taken.insert(wedges);
+    make_channels(element, group_properties(element, std::move(taken), file_.notes), mesh.face_channels,
+                  sinks);
 
     // Of these types any index that names a point is a number.
     const bool triangles = Body::kAscii && element.properties.size() == 1 && size_of(indices->type) == 4 &&
                            points_ <= std::numeric_limits<std::int32_t>::max();
     const auto parts = parts_of(element);
     std::vector<IndexedFaceSet> faces_of(parts.size());  // What each part holds.
+    std::vector<PartFaces> seen_of(parts.size() + 1);
     const auto rows = [&](Body& body, std::uint64_t first, std::uint64_t last,
                           std::size_t part) -> Result<void> {
       IndexedFaceSet& into = part == 0 ? mesh : faces_of[part - 1];
+      PartFaces& seen = seen_of[part];
       FaceCollector collector(into);
       collector.start_with_triangles(into.face_count());
+      std::vector<float> uv;
+      DVec3 unused;
       // Room for triangles, but for no more than there is: a corner takes two bytes of text or at least one
       // of binary.
       const std::uint64_t least = Body::kAscii ? 2 : size_of(indices->type);
@@ -579,12 +637,25 @@ class BodyReader {
         body.begin_element();
         if (triangles && triangle(body, into, collector)) continue;
         const char* at = body.at();
+        const std::size_t before = into.corners.size();
         for (std::size_t k = 0; k < element.properties.size(); ++k) {
           const Property& p = element.properties[k];
-          if (&p == indices)
-            VKMESH_CHECK(face(body, element, i, p, at, collector));
-          else
-            VKMESH_CHECK(p.list ? skip_list(body, element, i, p) : scalar(body, element, i, p, sinks[k]));
+          if (&p == indices) {
+            VKMESH_TRY(const bool kept, face(body, element, i, p, at, collector));
+            if (!kept) seen.skipped.push_back(i);
+          } else if (&p == wedges) {
+            VKMESH_CHECK(list(body, element, i, p, uv));
+          } else {
+            VKMESH_CHECK(p.list ? skip_list(body, element, i, p)
+                                : scalar(body, element, i, p, sinks[k], unused));
+          }
+        }
+        if (wedges != nullptr) {
+          const std::size_t corners = into.corners.size() - before;
+          if (uv.size() != 2 * corners) seen.without_uv += corners;
+          uv.resize(uv.size() == 2 * corners ? uv.size() : 0);
+          uv.resize(2 * corners, 0.0f);
+          seen.uv.insert(seen.uv.end(), uv.begin(), uv.end());
         }
         if (!body.end_element()) return body.bad_end(element);
       }
@@ -592,8 +663,12 @@ class BodyReader {
     };
     if (parts.size() > 1) {
       VKMESH_TRY(const bool whole, in_parts(parts, rows));
-      if (whole && join(faces_of, mesh)) return {};
+      if (whole && join(faces_of, mesh)) {
+        finish_faces(seen_of, wedges != nullptr, element.count, mesh);
+        return {};
+      }
       faces_of.clear();
+      seen_of.assign(1, {});
     }
     std::uint64_t done = 0;
     if constexpr (!Body::kAscii)
@@ -601,7 +676,128 @@ class BodyReader {
           size_of(indices->type) == 4) {
         VKMESH_TRY(done, packed_triangles(element, mesh.corners));
       }
-    return in_order(element, done, rows);
+    VKMESH_CHECK(in_order(element, done, rows));
+    finish_faces(seen_of, wedges != nullptr, element.count, mesh);
+    return {};
+  }
+
+  /// Drops what face channels hold of skipped faces, and makes the channel of the corners' texture
+  /// coordinates.
+  void finish_faces(const std::vector<PartFaces>& seen_of, bool has_wedges, std::uint64_t count,
+                    IndexedFaceSet& mesh) {
+    std::size_t skipped = 0, without_uv = 0;
+    for (const PartFaces& seen : seen_of) {
+      skipped += seen.skipped.size();
+      without_uv += seen.without_uv;
+    }
+    if (skipped > 0) {
+      std::vector<bool> is_kept(count, true);
+      for (const PartFaces& seen : seen_of)
+        for (const std::uint64_t f : seen.skipped) is_kept[f] = false;
+      std::vector<std::uint32_t> kept;
+      kept.reserve(count - skipped);
+      for (std::uint64_t f = 0; f < count; ++f)
+        if (is_kept[f]) kept.push_back(static_cast<std::uint32_t>(f));
+      mesh.face_channels = gather(mesh.face_channels, kept);
+      note_small_faces(file_.notes, skipped);
+    }
+    if (!has_wedges || without_uv == mesh.corners.size()) return;
+    std::vector<float> uv;
+    uv.reserve(2 * mesh.corners.size());
+    for (const PartFaces& seen : seen_of) uv.insert(uv.end(), seen.uv.begin(), seen.uv.end());
+    if (without_uv > 0)
+      file_.notes.push_back({"partial.uv", std::to_string(without_uv) + " corners without 'uv' got 0"});
+    mesh.corner_channels.push_back({"uv", 2, std::move(uv)});
+  }
+
+  /// Triangle strips, as in files of the Stanford archive: lists of points in which -1 begins another strip.
+  Result<void> strips(const Element& element) {
+    IndexedFaceSet& mesh = std::get<IndexedFaceSet>(file_.geometry);
+    const Property* indices = element.find("vertex_indices");
+    if (indices == nullptr) indices = element.find("vertex_index");
+    if (indices == nullptr || !indices->list || !is_integer(indices->type)) return other(element);
+    for (Channel& channel : mesh.face_channels)
+      file_.notes.push_back({"dropped." + channel.name, "face channel '" + channel.name +
+                                                            "' ignored: the triangles of strips have none"});
+    mesh.face_channels.clear();
+    if (!mesh.corner_channels.empty()) {
+      file_.notes.push_back({"dropped.uv", "corner channel 'uv' ignored: the triangles of strips have none"});
+      mesh.corner_channels.clear();
+    }
+    FaceCollector collector(mesh);
+    collector.start_with_triangles(mesh.face_count());
+    std::size_t turns = 0;
+    const auto rows = [&](Body& body, std::uint64_t first, std::uint64_t last, std::size_t) -> Result<void> {
+      DVec3 unused;
+      for (std::uint64_t i = first; i < last; ++i) {
+        body.begin_element();
+        for (const Property& p : element.properties) {
+          if (&p == indices)
+            VKMESH_CHECK(strip(body, element, i, p, collector, turns));
+          else
+            VKMESH_CHECK(p.list ? skip_list(body, element, i, p)
+                                : scalar(body, element, i, p, Sink{}, unused));
+        }
+        if (!body.end_element()) return body.bad_end(element);
+      }
+      return {};
+    };
+    VKMESH_CHECK(in_order(element, 0, rows));
+    if (turns > 0)
+      file_.notes.push_back({"skipped.strip_turns",
+                             std::to_string(turns) + " triangles without area that join strips ignored"});
+    return {};
+  }
+
+  Result<void> strip(Body& body, const Element& element, std::uint64_t i, const Property& p,
+                     FaceCollector& collector, std::size_t& turns) const {
+    std::uint64_t count = 0;
+    VKMESH_CHECK(list_count(body, element, i, p, count));
+    return with_type(p.type, [&](auto index) -> Result<void> {
+      std::array<std::uint32_t, 3> last{};
+      std::uint64_t in_strip = 0;
+      for (std::uint64_t k = 0; k < count; ++k) {
+        if (Source::due(k)) VKMESH_CHECK(source_.tick(body.at()));
+        const char* at = body.at();
+        if (!body.scalar(index)) return body.bad(element, i, p);
+        if constexpr (std::is_signed_v<decltype(index)>)
+          if (index == -1) {
+            in_strip = 0;
+            continue;
+          }
+        if (index < 0 || static_cast<std::uint64_t>(index) >= points_)
+          return bad_index(body, at, i, std::to_string(index));
+        last = {last[1], last[2], static_cast<std::uint32_t>(index)};
+        if (++in_strip < 3) continue;
+        if (last[0] == last[1] || last[1] == last[2] || last[2] == last[0]) {
+          ++turns;
+          continue;
+        }
+        // Every second triangle is turned so that all face one way.
+        const bool odd = in_strip % 2 == 0;
+        for (const std::size_t corner :
+             {std::size_t{odd ? 1u : 0u}, std::size_t{odd ? 0u : 1u}, std::size_t{2}})
+          collector.corner(last[corner]);
+        if (collector.end_face(3) == FaceCollector::Face::kTooMany)
+          return body.bad(at, "the faces have more corners than 32-bit indices can number");
+      }
+      return {};
+    });
+  }
+
+  /// The values of a list.
+  Result<void> list(Body& body, const Element& element, std::uint64_t i, const Property& p,
+                    std::vector<float>& to) const {
+    std::uint64_t count = 0;
+    VKMESH_CHECK(list_count(body, element, i, p, count));
+    to.clear();
+    return with_type(p.type, [&](auto value) -> Result<void> {
+      for (std::uint64_t k = 0; k < count; ++k) {
+        if (!body.scalar(value)) return body.bad(element, i, p);
+        to.push_back(static_cast<float>(value));
+      }
+      return {};
+    });
   }
 
   /// Puts the faces of the parts together. False, with nothing done, when there are more corners than 32-bit
@@ -642,15 +838,14 @@ class BodyReader {
     if (!cursor.end_element()) return false;
     for (const std::uint32_t c : corners) collector.corner(c);
     body = cursor;
-    return collector.end_face(3);
+    return collector.end_face(3) == FaceCollector::Face::kKept;
   }
 
-  Result<void> face(Body& body, const Element& element, std::uint64_t i, const Property& p, const char* at,
+  /// Whether the face is kept.
+  Result<bool> face(Body& body, const Element& element, std::uint64_t i, const Property& p, const char* at,
                     FaceCollector& collector) const {
     std::uint64_t count = 0;
     VKMESH_CHECK(list_count(body, element, i, p, count));
-    if (count < 3)
-      return body.bad(at, "face " + std::to_string(i) + " has " + std::to_string(count) + " corners");
     VKMESH_CHECK(with_type(p.type, [&](auto index) -> Result<void> {
       for (std::uint64_t k = 0; k < count; ++k) {
         const char* corner_at = body.at();
@@ -661,9 +856,10 @@ class BodyReader {
       }
       return {};
     }));
-    if (!collector.end_face(count))
+    const FaceCollector::Face kept = collector.end_face(count);
+    if (kept == FaceCollector::Face::kTooMany)
       return body.bad(at, "the faces have more corners than 32-bit indices can number");
-    return {};
+    return kept == FaceCollector::Face::kKept;
   }
 
   tl::unexpected<Error> bad_index(const Body& body, const char* at, std::uint64_t face,
@@ -704,8 +900,15 @@ class BodyReader {
   }
 
   Result<void> other(const Element& element) {
-    if (element.count > 0)
-      file_.notes.push_back(std::to_string(element.count) + " of element '" + element.name + "' ignored");
+    if (element.count > 0) {
+      file_.notes.push_back(
+          {"dropped.element", std::to_string(element.count) + " of element '" + element.name + "' ignored"});
+      const auto names_points = [](const Property& p) {
+        return p.list && (p.name == "vertex_indices" || p.name == "vertex_index");
+      };
+      if (std::any_of(element.properties.begin(), element.properties.end(), names_points))
+        unknown_faces_ = &element;
+    }
     return body_.skip(element);
   }
 
@@ -715,8 +918,11 @@ class BodyReader {
   Body body_;
   MeshFile& file_;
   std::uint64_t points_ = 0;
-  std::vector<Block> blocks_;  ///< Of text that is long enough for more than one.
-  std::uint64_t lines_ = 0;    ///< Of the elements before the present one.
+  Positions placed_{source_.offset};
+  NonFinitePoints not_finite_;
+  const Element* unknown_faces_ = nullptr;  ///< An ignored element whose lists name points.
+  std::vector<Block> blocks_;               ///< Of text that is long enough for more than one.
+  std::uint64_t lines_ = 0;                 ///< Of the elements before the present one.
 };
 
 }  // namespace

@@ -67,7 +67,8 @@ std::vector<OutColumn> columns_of(const std::vector<Channel>& channels, std::set
     }
     used.insert(names.begin(), names.end());
     if (color && !is_integer(type))
-      notes.push_back(std::string(element) + " channel 'color' rounded to 8 bits");
+      notes.push_back({"rounded.color", std::string(element) + " channel 'color' rounded to 8 bits"});
+    if (!channel.labels.empty()) note_labels_left_out(notes, element, channel);
     for (unsigned k = 0; k < channel.components; ++k)
       columns.push_back({names[k], &channel, k, color ? Scalar::kUint8 : type, color});
   }
@@ -110,14 +111,26 @@ void put_columns(Output& out, char*& to, const std::vector<OutColumn>& columns, 
 
 template <FileEncoding kEncoding>
 void put_body(const IndexedFaceSet& mesh, const std::vector<OutColumn>& point_columns,
-              const std::vector<OutColumn>& face_columns, bool wide_counts, Output& out) {
+              const std::vector<OutColumn>& face_columns, const Channel* wedges, bool wide_counts,
+              const DVec3& offset, Output& out) {
+  const bool moved = offset != DVec3(0.0);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     char* to = out.room(256);
-    for (int axis = 0; axis < 3; ++axis) to = put_scalar<kEncoding>(to, mesh.points[i][axis]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float coordinate = mesh.points[i][axis];
+      if (!moved) {
+        to = put_scalar<kEncoding>(to, coordinate);
+      } else if (kEncoding == FileEncoding::kAscii) {
+        to = put_coordinate(to, coordinate, offset[axis]);
+        *to++ = ' ';
+      } else {
+        to = put_scalar<kEncoding>(to, static_cast<double>(coordinate) + offset[axis]);
+      }
+    }
     put_columns<kEncoding>(out, to, point_columns, i);
     end_line<kEncoding>(out, to);
   }
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+  for (std::size_t f = 0, corner = 0; f < mesh.face_count(); ++f) {
     const auto corners = mesh.face(f);
     char* to = out.room(256);
     const auto count = static_cast<std::uint32_t>(corners.size());
@@ -128,6 +141,16 @@ void put_body(const IndexedFaceSet& mesh, const std::vector<OutColumn>& point_co
       to = out.room(64);
       to = put_scalar<kEncoding>(to, c);
     }
+    if (wedges != nullptr) {
+      to = wide_counts ? put_scalar<kEncoding>(to, 2 * count)
+                       : put_scalar<kEncoding>(to, static_cast<std::uint8_t>(2 * count));
+      for (std::uint32_t k = 0; k < 2 * count; ++k) {
+        out.commit(to);
+        to = out.room(64);
+        to = put_scalar<kEncoding>(to, channel_float(*wedges, 2 * corner + k));
+      }
+      corner += count;
+    }
     put_columns<kEncoding>(out, to, face_columns, f);
     end_line<kEncoding>(out, to);
   }
@@ -137,13 +160,17 @@ void put_body(const IndexedFaceSet& mesh, const std::vector<OutColumn>& point_co
 
 void encode_ply(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
   const auto point_columns = columns_of(mesh.point_channels, {"x", "y", "z"}, "point", notes);
-  const auto face_columns = columns_of(mesh.face_channels, {"vertex_indices", "vertex_index"}, "face", notes);
+  const auto face_columns =
+      columns_of(mesh.face_channels, {"vertex_indices", "vertex_index", "texcoord"}, "face", notes);
+  const Channel* wedges = find_channel(mesh.corner_channels, "uv");
+  if (wedges != nullptr && (wedges->components != 2 || mesh.corners.empty())) wedges = nullptr;
   for (const Channel& c : mesh.corner_channels)
-    note_left_out(notes, "corner", c, "PLY has no attributes of corners");
+    if (&c != wedges) note_left_out(notes, "corner", c, "PLY holds uv of corners");
 
   std::size_t widest = 3;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) widest = std::max(widest, mesh.face(f).size());
-  const bool wide_counts = widest > 255;
+  const bool wide_counts = (wedges != nullptr ? 2 : 1) * widest > 255;
+  const std::string coordinate = options.offset == DVec3(0.0) ? "float" : "double";
 
   std::string header = "ply\nformat " + name_of(options.encoding) + " 1.0\n";
   for (const std::string& line : comment_lines(options.comment)) header += "comment " + line + "\n";
@@ -151,25 +178,30 @@ void encode_ply(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     return "property " + std::string(name_of_scalar(c.type)) + " " + c.property + "\n";
   };
   header += "element vertex " + std::to_string(mesh.points.size()) + "\n";
-  for (const char* axis : {"x", "y", "z"}) header += std::string("property float ") + axis + "\n";
+  for (const char* axis : {"x", "y", "z"}) header += "property " + coordinate + " " + axis + "\n";
   for (const OutColumn& c : point_columns) header += property(c);
   header += "element face " + std::to_string(mesh.face_count()) + "\nproperty list ";
   header += wide_counts ? "uint " : "uchar ";
   header += mesh.points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) ? "uint"
                                                                                                     : "int";
   header += " vertex_indices\n";
+  if (wedges != nullptr)
+    header += std::string("property list ") + (wide_counts ? "uint" : "uchar") + " float texcoord\n";
   for (const OutColumn& c : face_columns) header += property(c);
   out.put(header + "end_header\n");
 
   switch (options.encoding) {
     case FileEncoding::kAscii:
-      put_body<FileEncoding::kAscii>(mesh, point_columns, face_columns, wide_counts, out);
+      put_body<FileEncoding::kAscii>(mesh, point_columns, face_columns, wedges, wide_counts, options.offset,
+                                     out);
       break;
     case FileEncoding::kBinaryLittleEndian:
-      put_body<FileEncoding::kBinaryLittleEndian>(mesh, point_columns, face_columns, wide_counts, out);
+      put_body<FileEncoding::kBinaryLittleEndian>(mesh, point_columns, face_columns, wedges, wide_counts,
+                                                  options.offset, out);
       break;
     case FileEncoding::kBinaryBigEndian:
-      put_body<FileEncoding::kBinaryBigEndian>(mesh, point_columns, face_columns, wide_counts, out);
+      put_body<FileEncoding::kBinaryBigEndian>(mesh, point_columns, face_columns, wedges, wide_counts,
+                                               options.offset, out);
       break;
   }
 }

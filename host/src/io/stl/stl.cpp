@@ -20,10 +20,6 @@ constexpr std::size_t kHeader = 80;
 constexpr std::size_t kStart = kHeader + 4;
 constexpr std::size_t kFacet = 50;  // Normal, three corners, 16 bits of attribute.
 
-bool is_finite(const Vec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 bool same_word(std::string_view word, std::string_view lower) {
   return std::equal(word.begin(), word.end(), lower.begin(), lower.end(),
                     [](char a, char b) { return a == b || (a >= 'A' && a <= 'Z' && a + ('a' - 'A') == b); });
@@ -37,13 +33,16 @@ class AsciiStlReader {
     std::size_t solids = 0;
     for (text_.skip_to_content(); !text_.at_end(); text_.skip_to_content()) {
       VKMESH_CHECK(keyword("solid"));
-      text_.skip_to_line_end();  // A name, of any words.
+      skip_name("facet", "normal");
       VKMESH_CHECK(facets());
       ++solids;
     }
     MeshFile file;
     file.format = FileFormat::kStl;
-    if (solids > 1) file.notes.push_back(std::to_string(solids) + " solids joined into one mesh");
+    if (solids > 1)
+      file.notes.push_back({"dropped.solids", std::to_string(solids) + " solids joined into one mesh"});
+    if (unended_) file.notes.push_back({"repaired.endsolid", "the file ends without 'endsolid'"});
+    note_small_faces(file.notes, small_faces_);
     if (!soup_.face_offsets.empty() && soup_.face_offsets.back() == 3 * (soup_.face_offsets.size() - 1))
       soup_.face_offsets = {};
     soup_.face_channels.push_back({"normal", 3, std::move(normals_)});
@@ -57,18 +56,58 @@ class AsciiStlReader {
     return source_.bad_line(text_.at(), "expected " + what + ", found " + text_.found());
   }
 
-  Result<void> keyword(std::string_view wanted) {
+  /// The next word, which may stand in two: "end loop".
+  bool accept(std::string_view wanted) {
     text_.skip_to_content();
     const TextCursor before = text_;
-    if (same_word(text_.word(), wanted)) return {};
+    const std::string_view word = text_.word();
+    if (same_word(word, wanted)) return true;
+    if (wanted.starts_with("end") && same_word(word, "end")) {
+      text_.skip_to_content();
+      if (same_word(text_.word(), wanted.substr(3))) return true;
+    }
     text_ = before;
+    return false;
+  }
+
+  Result<void> keyword(std::string_view wanted) {
+    if (accept(wanted)) return {};
     return expected("'" + std::string(wanted) + "'");
   }
 
-  Result<void> vector(const char* what, Vec3& to) {
+  /// Over a name of any words: to the end of the line, or to where two words go on with the content, as in
+  /// files without line ends.
+  void skip_name(std::string_view first, std::string_view second) {
+    while (!text_.line_done()) {
+      const TextCursor before = text_;
+      if (same_word(text_.word(), first)) {
+        const TextCursor behind = text_;
+        if (same_word(text_.word(), second)) {
+          text_ = before;
+          return;
+        }
+        text_ = behind;
+      }
+    }
+  }
+
+  /// The rest of the line behind 'endsolid', unless another solid with facets begins in it.
+  void skip_end_name() {
+    while (!text_.line_done()) {
+      const TextCursor before = text_;
+      if (!same_word(text_.word(), "solid")) continue;
+      const TextCursor behind = text_;
+      skip_name("facet", "normal");
+      const bool facets = !text_.line_done();
+      text_ = facets ? before : behind;
+      if (facets) return;
+    }
+  }
+
+  Result<void> vector(const char* what, DVec3& to) {
     for (int axis = 0; axis < 3; ++axis) {
       text_.skip_to_content();
-      if (!text_.number(to[axis])) return expected(std::string("a number of ") + what);
+      if (!text_.coordinate(to[axis])) return expected(std::string("a number of ") + what);
     }
     return {};
   }
@@ -78,22 +117,30 @@ class AsciiStlReader {
       if (Source::due(f)) VKMESH_CHECK(source_.tick(text_.at()));
       text_.skip_to_content();
       const char* at = text_.at();
+      if (accept("facet")) {
+        VKMESH_CHECK(facet(at));
+        continue;
+      }
+      // Some writers glue the name to it.
+      const TextCursor before = text_;
       const std::string_view word = text_.word();
-      if (same_word(word, "endsolid")) {
-        text_.skip_to_line_end();
+      if (same_word(word.substr(0, 8), "endsolid") || (text_ = before, accept("endsolid"))) {
+        skip_end_name();
         return {};
       }
-      if (!same_word(word, "facet"))
-        return source_.bad_line(
-            at, word.empty() ? "the file ends without 'endsolid'"
-                             : "expected 'facet' or 'endsolid', found " + TextCursor(word).found());
-      VKMESH_CHECK(facet(at));
+      if (text_.at_end() && f > 0) {
+        unended_ = true;
+        return {};
+      }
+      return source_.bad_line(at, word.empty()
+                                      ? "the file ends without 'endsolid'"
+                                      : "expected 'facet' or 'endsolid', found " + TextCursor(word).found());
     }
   }
 
   Result<void> facet(const char* at) {
     VKMESH_CHECK(keyword("normal"));
-    Vec3 normal(0);
+    DVec3 normal(0.0);
     VKMESH_CHECK(vector("a normal", normal));
     VKMESH_CHECK(keyword("outer"));
     VKMESH_CHECK(keyword("loop"));
@@ -106,14 +153,19 @@ class AsciiStlReader {
         text_ = before;
         break;
       }
-      Vec3 corner(0);
+      DVec3 corner(0.0);
       VKMESH_CHECK(vector("a vertex", corner));
-      if (!is_finite(corner)) return source_.bad_line(corner_at, "a coordinate is not finite");
-      soup_.corners.push_back(corner);
+      const Vec3 placed = source_.positions->place(corner);
+      if (!all_finite(placed)) return source_.bad_line(corner_at, "a coordinate is not finite");
+      soup_.corners.push_back(placed);
     }
     VKMESH_CHECK(keyword("endloop"));
     VKMESH_CHECK(keyword("endfacet"));
-    if (count < 3) return source_.bad_line(at, "a facet has " + std::to_string(count) + " corners");
+    if (count < 3) {
+      soup_.corners.resize(soup_.corners.size() - count);
+      ++small_faces_;
+      return {};
+    }
     if (soup_.corners.size() > kMaxElements)
       return source_.bad_line(at, "the facets have more corners than 32-bit indices can number");
     if (count != 3 && soup_.face_offsets.empty())
@@ -122,7 +174,7 @@ class AsciiStlReader {
     ++faces_;
     if (!soup_.face_offsets.empty())
       soup_.face_offsets.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
-    normals_.insert(normals_.end(), {normal.x, normal.y, normal.z});
+    for (int axis = 0; axis < 3; ++axis) normals_.push_back(static_cast<float>(normal[axis]));
     return {};
   }
 
@@ -130,8 +182,34 @@ class AsciiStlReader {
   TextCursor text_;
   PolygonSoup soup_;
   std::vector<float> normals_;
-  std::size_t faces_ = 0;
+  std::size_t faces_ = 0, small_faces_ = 0;
+  bool unended_ = false;
 };
+
+/// Where the facets of a binary file begin, and what follows them.
+struct BinaryLayout {
+  std::vector<std::size_t> places;  ///< Of each facet, where they do not follow each other.
+  std::uint64_t facets = 0;
+  std::uint64_t payload = 0;   ///< Bytes between facets.
+  std::uint64_t trailing = 0;  ///< Bytes behind the last.
+};
+
+/// Some files count the bytes of an attribute that follows each facet in the 16 bits at its end. True when
+/// the file is one of those: the bytes come out exactly.
+bool find_payload(std::string_view bytes, BinaryLayout& layout) {
+  std::size_t at = kStart;
+  for (std::uint64_t f = 0; f < layout.facets; ++f) {
+    if (bytes.size() - at < kFacet) return false;
+    layout.places.push_back(at);
+    std::uint16_t length = 0;
+    std::memcpy(&length, bytes.data() + at + 48, sizeof(length));
+    at += kFacet;
+    if (bytes.size() - at < length) return false;
+    at += length;
+    layout.payload += length;
+  }
+  return layout.payload > 0 && at == bytes.size();
+}
 
 Vec3 facet_normal(const std::array<Vec3, 3>& corners) {
   const DVec3 a(corners[0]), u = DVec3(corners[1]) - a, v = DVec3(corners[2]) - a;
@@ -158,12 +236,35 @@ Result<MeshFile> parse_stl_binary(const Source& source) {
   const char* end = bytes.data() + bytes.size();
   if (bytes.size() < kStart)
     return source.bad_byte(end, "the file ends within the 84 bytes that begin a binary STL file");
-  const std::uint64_t promised = stl_binary_size(bytes), facets = (promised - kStart) / kFacet;
-  if (promised != bytes.size())
+  BinaryLayout layout;
+  layout.facets = (stl_binary_size(bytes) - kStart) / kFacet;
+  MeshFile file;
+  // Some writers do not know the count when they write the header.
+  const bool counted = layout.facets > 0 || bytes.size() == kStart;
+  if (!counted && bytes.size() - kStart < kFacet)
+    return source.bad_byte(bytes.data() + kHeader, "the header promises 0 facets, but the file has " +
+                                                       std::to_string(bytes.size()) + " bytes");
+  if (!counted) {
+    layout.facets = (bytes.size() - kStart) / kFacet;
+    file.notes.push_back({"repaired.count", "the header promises 0 facets, but the file has bytes for " +
+                                                std::to_string(layout.facets) + ", which are read"});
+  }
+  const std::uint64_t facets = layout.facets, promised = kStart + kFacet * facets;
+  if (promised > bytes.size())
     return source.bad_byte(bytes.data() + kHeader, "the header promises " + std::to_string(facets) +
                                                        " facets, " + std::to_string(promised) +
                                                        " bytes in all, but the file has " +
                                                        std::to_string(bytes.size()));
+  if (promised < bytes.size() && !(counted && find_payload(bytes, layout))) {
+    layout.places.clear();
+    layout.payload = 0;
+    layout.trailing = bytes.size() - promised;
+    file.notes.push_back(
+        {"dropped.trailing_bytes", std::to_string(layout.trailing) + " bytes behind the last facet ignored"});
+  }
+  if (layout.payload > 0)
+    file.notes.push_back({"dropped.attribute_bytes",
+                          std::to_string(layout.payload) + " bytes of attributes behind facets ignored"});
   if (3 * facets > kMaxElements)
     return source.bad_byte(bytes.data() + kHeader,
                            "the facets have more corners than 32-bit indices can number");
@@ -172,23 +273,26 @@ Result<MeshFile> parse_stl_binary(const Source& source) {
   soup.corners.resize(3 * facets);
   std::vector<float> normals(3 * facets);
   std::vector<std::uint16_t> attributes;
+  const bool moved = source.offset != DVec3(0.0);  // Floats lose nothing where they are.
   for (std::size_t f = 0; f < facets; ++f) {
-    const char* at = bytes.data() + kStart + f * kFacet;
+    const char* at = bytes.data() + (layout.places.empty() ? kStart + f * kFacet : layout.places[f]);
     if (Source::due(f)) VKMESH_CHECK(source.tick(at));
     std::memcpy(&normals[3 * f], at, 12);
     std::memcpy(&soup.corners[3 * f], at + 12, 36);
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!is_finite(soup.corners[3 * f + k]))
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3& corner = soup.corners[3 * f + k];
+      if (!all_finite(corner))
         return source.bad_byte(at + 12 + 12 * k,
                                "facet " + std::to_string(f) + " has a coordinate that is not finite");
+      if (moved) corner = source.positions->place(DVec3(corner));
+    }
     std::uint16_t attribute = 0;
-    std::memcpy(&attribute, at + 48, sizeof(attribute));
+    if (layout.payload == 0) std::memcpy(&attribute, at + 48, sizeof(attribute));
     if (attribute != 0 && attributes.empty()) attributes.resize(facets);
     if (attribute != 0) attributes[f] = attribute;
   }
   soup.face_channels.push_back({"normal", 3, std::move(normals)});
   if (!attributes.empty()) soup.face_channels.push_back({"attribute", 1, std::move(attributes)});
-  MeshFile file;
   file.geometry = std::move(soup);
   file.format = FileFormat::kStl;
   file.encoding = FileEncoding::kBinaryLittleEndian;
@@ -205,6 +309,11 @@ void encode_stl(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     note_left_out(notes, "point", c, "STL has no attributes of points");
   for (const Channel& c : mesh.corner_channels)
     note_left_out(notes, "corner", c, "STL has no attributes of corners");
+  std::vector<bool> used(mesh.points.size());
+  for (const std::uint32_t c : mesh.corners) used[c] = true;
+  if (const auto alone = std::count(used.begin(), used.end(), false); alone > 0)
+    notes.push_back({"dropped.isolated_points",
+                     std::to_string(alone) + " points that no face uses left out: STL holds triangles only"});
   for (const Channel& c : mesh.face_channels) {
     if (&c == attribute) continue;
     note_left_out(
@@ -227,26 +336,29 @@ void encode_stl(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     out.commit(to + kStart);
   }
 
+  Positions placed;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.face(f);
-    const std::array<Vec3, 3> corners = {mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]]};
+    std::array<Vec3, 3> corners = {mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]]};
     const Vec3 normal = facet_normal(corners);
     char* to = out.room(1024);
     const auto put = [&](std::string_view word) { to = std::copy(word.begin(), word.end(), to); };
-    const auto put_vector = [&](std::string_view word, const Vec3& v) {
+    const auto put_vector = [&](std::string_view word, const Vec3& v, const DVec3& offset) {
       put(word);
       for (int axis = 0; axis < 3; ++axis) {
         *to++ = ' ';
-        to = put_number(to, v[axis]);
+        to = put_coordinate(to, v[axis], offset[axis]);
       }
       *to++ = '\n';
     };
     if (ascii) {
-      put_vector("facet normal", normal);
+      put_vector("facet normal", normal, DVec3(0.0));
       put("outer loop\n");
-      for (const Vec3& c : corners) put_vector("vertex", c);
+      for (const Vec3& c : corners) put_vector("vertex", c, options.offset);
       put("endloop\nendfacet\n");
     } else {
+      if (options.offset != DVec3(0.0))
+        for (Vec3& c : corners) c = placed.place(DVec3(c) + options.offset);
       std::memcpy(to, &normal, 12);
       std::memcpy(to + 12, corners.data(), 36);
       const std::uint16_t bits = attribute != nullptr
@@ -258,6 +370,7 @@ void encode_stl(const IndexedFaceSet& mesh, const WriteOptions& options, Output&
     out.commit(to);
   }
   if (ascii) out.put("endsolid" + (name.empty() ? "" : " " + name) + "\n");
+  placed.add_notes(notes);
 }
 
 }  // namespace vkmesh::detail

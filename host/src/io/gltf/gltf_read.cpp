@@ -1,5 +1,5 @@
-// glTF 2.0 and its binary container GLB (Khronos Group, glTF 2.0 specification, ISO/IEC 12113:2022): the
-// triangles and points of a scene.
+// Reading glTF 2.0 and its binary container GLB (Khronos Group, glTF 2.0 specification, ISO/IEC 12113:2022):
+// the triangles and points of a scene.
 //
 // tinygltf takes the structure out of the JSON, and writes files. It checks few numbers, so everything here
 // is checked before use; and the bytes of buffers are fetched here, because it looks for files in the current
@@ -16,9 +16,7 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <ostream>
 #include <set>
-#include <streambuf>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -32,8 +30,8 @@
 #include <glm/mat4x4.hpp>
 #include <nlohmann/json.hpp>
 
-#include "base/distinct_rows.h"
 #include "io/formats.h"
+#include "io/gltf/gltf.h"
 #include "io/gltf/tinygltf.h"
 
 namespace vkmesh::detail {
@@ -52,8 +50,7 @@ constexpr int kDeepest = 64;
 /// file, and more in proportion to its size.
 constexpr std::uint64_t kFreeElements = std::uint64_t{1} << 24, kElementsPerByte = 256;
 
-// ------------------------------------------------------------------------------------------------- the
-// container
+// ---- container
 
 struct Container {
   std::string_view json;
@@ -119,8 +116,7 @@ bool nests_deeper(std::string_view json, int limit) {
   return false;
 }
 
-// -------------------------------------------------------------------------------------------------- the
-// document
+// ---- document
 
 const Json* member(const Json& object, const char* key) {
   if (!object.is_object()) return nullptr;
@@ -152,6 +148,33 @@ std::string decode_percents(const std::string& uri) {
     }
   }
   return out;
+}
+
+/// Base64 (RFC 4648), percent-encoded or not, as far as `limit` bytes. False for other characters.
+bool decode_base64(std::string_view text, std::uint64_t limit, std::vector<unsigned char>& to) {
+  std::string decoded;
+  if (text.find('%') != std::string_view::npos) {
+    decoded = decode_percents(std::string(text));
+    text = decoded;
+  }
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const int value = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+' || c == '-' ? 62
+                      : c == '/' || c == '_' ? 63
+                                             : -1;
+    if (value < 0) return false;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    if (to.size() < limit) to.push_back(static_cast<unsigned char>(bits >> count & 0xff));
+  }
+  return true;
 }
 
 /// What a file holds for a mesh: the structure, the bytes, and the names of the materials.
@@ -211,7 +234,8 @@ class AssetReader {
       std::vector<std::string> found;
       if (const Json* list = member(document, key); list != nullptr && list->is_array())
         for (const Json& name : *list)
-          if (name.is_string() && name != "KHR_mesh_quantization") found.push_back(name.get<std::string>());
+          if (name.is_string() && name != "KHR_mesh_quantization" && name != "EXT_mesh_gpu_instancing")
+            found.push_back(name.get<std::string>());
       return found;
     };
     for (const std::string& name : names("extensionsRequired"))
@@ -220,7 +244,7 @@ class AssetReader {
         return bad("the file requires the extension " + name + ", which is not supported");
     std::string ignored;
     for (const std::string& name : names("extensionsUsed")) ignored += (ignored.empty() ? "" : ", ") + name;
-    if (!ignored.empty()) notes_.push_back("extensions ignored: " + ignored);
+    if (!ignored.empty()) notes_.push_back({"dropped.extensions", "extensions ignored: " + ignored});
     return {};
   }
 
@@ -253,12 +277,11 @@ class AssetReader {
   Result<void> fetch(const std::string& uri, const std::string& name, std::uint64_t promised,
                      std::vector<unsigned char>& to) {
     if (uri.starts_with("data:")) {
-      std::string mime_type;
-      if (uri.size() > std::numeric_limits<int>::max() || !tinygltf::IsDataURI(uri) ||
-          (promised > 0 && !tinygltf::DecodeDataURI(&to, mime_type, uri, 0, false)))
-        return bad(
-            name +
-            " has a data URI that is no base64 of application/octet-stream or application/gltf-buffer");
+      // Any media type, or none: the bytes are the buffer's whatever it says.
+      const std::size_t comma = uri.find(',');
+      if (comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64") ||
+          !decode_base64(std::string_view(uri).substr(comma + 1), promised, to))
+        return bad(name + " has a data URI that is no base64");
       return {};
     }
     const std::string shown = "'" + uri.substr(0, 200) + "'";
@@ -272,7 +295,8 @@ class AssetReader {
       return bad(name + " lies in the file " + shown +
                  ", which only a glTF file read from a folder can name");
     if (relative.lexically_normal().string().starts_with(".."))
-      notes_.push_back(name + " was read from " + shown + ", outside the folder of the file");
+      notes_.push_back(
+          {"repaired.place", name + " was read from " + shown + ", outside the folder of the file"});
     const std::filesystem::path path = *source_.folder / relative;
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code))
@@ -287,19 +311,21 @@ class AssetReader {
   }
 
   void note_ignored(const Json& document) {
-    const auto note = [&](const char* key, const char* what) {
+    const auto note = [&](const char* key, const char* code, const char* what) {
       if (const std::size_t count = array_size(document, key); count > 0)
-        notes_.push_back(std::to_string(count) + " " + what + " ignored");
+        notes_.push_back({code, std::to_string(count) + " " + what});
     };
-    note("images", "images");
-    note("skins", "skins");
-    note("animations", "animations");
+    note("images", "dropped.images", "images ignored");
+    note("skins", "dropped.skin", "skins not kept: meshes are read as they pose them");
+    note("animations", "dropped.animation", "animations ignored");
   }
 
   Result<void> read_structure(Json& document, tinygltf::Model& to) const {
     Json kept = Json::object();
-    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews"})
+    for (const char* key :
+         {"asset", "scene", "scenes", "nodes", "meshes", "skins", "accessors", "bufferViews"})
       if (const auto it = document.find(key); it != document.end()) kept[key] = std::move(*it);
+    const std::map<std::pair<std::size_t, std::size_t>, int> zeros = take_indices_without_view(kept);
     const std::string text = kept.dump();
     if (text.size() > std::numeric_limits<unsigned>::max()) return bad("the JSON exceeds 4 GiB");
     std::string error, warning;
@@ -310,7 +336,34 @@ class AssetReader {
         !error.empty())
       return bad("the glTF structure is malformed: " +
                  error.substr(0, std::min(error.find('\n'), error.size())));
+    for (const auto& [place, accessor] : zeros)
+      if (place.first < to.meshes.size() && place.second < to.meshes[place.first].primitives.size())
+        to.meshes[place.first].primitives[place.second].indices = accessor;
     return {};
+  }
+
+  /// tinygltf refuses indices without a buffer view, which the specification (3.6.2.1) makes zeros: they are
+  /// taken out of its sight. Returns their accessors by the numbers of mesh and primitive.
+  static std::map<std::pair<std::size_t, std::size_t>, int> take_indices_without_view(Json& document) {
+    std::map<std::pair<std::size_t, std::size_t>, int> taken;
+    const Json* accessors = member(document, "accessors");
+    const auto meshes = document.find("meshes");
+    if (accessors == nullptr || !accessors->is_array() || meshes == document.end() || !meshes->is_array())
+      return taken;
+    for (std::size_t m = 0; m < meshes->size(); ++m) {
+      Json& mesh = (*meshes)[m];
+      if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
+      for (std::size_t p = 0; p < mesh["primitives"].size(); ++p) {
+        Json& primitive = mesh["primitives"][p];
+        const Json* indices = member(primitive, "indices");
+        if (indices == nullptr || !indices->is_number_unsigned()) continue;
+        const auto index = indices->get<std::uint64_t>();
+        if (index >= accessors->size() || member((*accessors)[index], "bufferView") != nullptr) continue;
+        taken[{m, p}] = static_cast<int>(index);
+        primitive.erase("indices");
+      }
+    }
+    return taken;
   }
 
   const Source& source_;
@@ -318,8 +371,7 @@ class AssetReader {
   Notes& notes_;
 };
 
-// ------------------------------------------------------------------------------------------------- the
-// accessors
+// ---- accessors
 
 /// Calls visit with a value of the type that a component type names. False for one that names none.
 template <class Visit>
@@ -354,7 +406,7 @@ std::size_t component_size(int type) {
   return size;
 }
 
-/// 1 to 4, or 0 for matrices.
+/// 1 to 4, 16 for matrices of four columns, 0 for others, whose columns are padded.
 unsigned components_of(const tinygltf::Accessor& accessor) {
   switch (accessor.type) {
     case TINYGLTF_TYPE_SCALAR:
@@ -365,6 +417,8 @@ unsigned components_of(const tinygltf::Accessor& accessor) {
       return 3;
     case TINYGLTF_TYPE_VEC4:
       return 4;
+    case TINYGLTF_TYPE_MAT4:
+      return 16;
     default:
       return 0;
   }
@@ -501,8 +555,7 @@ class AccessorReader {
   std::uint64_t budget_;
 };
 
-// ----------------------------------------------------------------------------------------------------- the
-// scene
+// ---- scene
 
 /// An attribute of points that grows primitive by primitive. Points of a primitive without it get the fill
 /// value.
@@ -558,18 +611,6 @@ struct GrowingChannel {
   }
 };
 
-/// The name of the channel for an attribute of the file; empty for one that is not read.
-std::string channel_name(const std::string& attribute) {
-  if (attribute == "NORMAL") return "normal";
-  if (attribute == "TEXCOORD_0") return "uv";
-  if (attribute == "COLOR_0") return "color";
-  if (!attribute.starts_with('_')) return "";
-  std::string name = attribute.substr(1);
-  for (char& c : name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return name == "normal" || name == "uv" || name == "color" ? "" : name;
-}
-
 class SceneReader {
  public:
   SceneReader(const Source& source, const Asset& asset, Notes& notes)
@@ -603,7 +644,8 @@ class SceneReader {
                    std::to_string(model_.scenes.size()));
       roots = model_.scenes[static_cast<std::size_t>(model_.defaultScene)].nodes;
       if (model_.scenes.size() > 1)
-        notes_.push_back(std::to_string(model_.scenes.size() - 1) + " scenes beside the default one ignored");
+        notes_.push_back({"dropped.scenes", std::to_string(model_.scenes.size() - 1) +
+                                                " scenes beside the default one ignored"});
     } else {
       // Scenes may share roots.
       std::set<int> seen;
@@ -622,6 +664,8 @@ class SceneReader {
     };
     push(roots, dmat4(1));
     std::vector<bool> reached(model_.nodes.size());
+    worlds_.assign(model_.nodes.size(), dmat4(1));
+    std::vector<std::size_t> shown;
     while (!open.empty()) {
       const Visit visit = open.back();
       open.pop_back();
@@ -637,8 +681,82 @@ class SceneReader {
       dmat4 local(1);
       VKMESH_CHECK(transform(node, index, local));
       const dmat4 world = visit.parent * local;
-      if (node.mesh >= 0) VKMESH_CHECK(add_mesh(node.mesh, world));
+      worlds_[index] = world;
+      if (node.mesh >= 0) shown.push_back(index);
       push(node.children, world);
+    }
+    // Joints may stand anywhere in the scene: all places are settled first.
+    for (const std::size_t index : shown) {
+      const tinygltf::Node& node = model_.nodes[index];
+      if (node.skin >= 0)
+        VKMESH_CHECK(add_skinned(node));
+      else
+        VKMESH_CHECK(add_instances(node, index, worlds_[index]));
+    }
+    return {};
+  }
+
+  /// A mesh that a skin poses: where its joints are, and not where its node is (specification, 3.7.3.3).
+  Result<void> add_skinned(const tinygltf::Node& node) {
+    const std::string name = "skin " + std::to_string(node.skin);
+    if (static_cast<std::size_t>(node.skin) >= model_.skins.size())
+      return bad(name + " of " + std::to_string(model_.skins.size()) + " is named");
+    const tinygltf::Skin& skin = model_.skins[static_cast<std::size_t>(node.skin)];
+    std::vector<double> inverse;
+    if (skin.inverseBindMatrices >= 0) {
+      VKMESH_TRY(const tinygltf::Accessor* const accessor, accessors_.accessor(skin.inverseBindMatrices));
+      if (accessor->type != TINYGLTF_TYPE_MAT4 || accessor->count < skin.joints.size())
+        return bad(name + " has no inverse bind matrix for each joint");
+      VKMESH_TRY(inverse, accessors_.components<double>(skin.inverseBindMatrices));
+    }
+    joints_.clear();
+    for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+      if (skin.joints[j] < 0 || static_cast<std::size_t>(skin.joints[j]) >= worlds_.size())
+        return bad(name + " names node " + std::to_string(skin.joints[j]) + " of " +
+                   std::to_string(worlds_.size()));
+      dmat4 bind(1);
+      for (std::size_t i = 0; i < 16 && !inverse.empty(); ++i)
+        bind[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = inverse[16 * j + i];
+      joints_.push_back(worlds_[static_cast<std::size_t>(skin.joints[j])] * bind);
+    }
+    // A mesh that has no weights stays as it is.
+    const Result<void> added = add_mesh(node.mesh, dmat4(1));
+    joints_.clear();
+    return added;
+  }
+
+  /// A mesh in its place, or in each of those that EXT_mesh_gpu_instancing gives it.
+  Result<void> add_instances(const tinygltf::Node& node, std::size_t index, const dmat4& world) {
+    const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+    if (extension == node.extensions.end()) return add_mesh(node.mesh, world);
+    const tinygltf::Value& attributes = extension->second.Get("attributes");
+    std::optional<std::size_t> count;
+    const auto values = [&](const char* name, unsigned width) -> Result<std::vector<double>> {
+      if (!attributes.IsObject() || !attributes.Has(name)) return std::vector<double>{};
+      const int accessor_index = attributes.Get(name).GetNumberAsInt();
+      VKMESH_TRY(const tinygltf::Accessor* const accessor, accessors_.accessor(accessor_index));
+      if (components_of(*accessor) != width || accessor->count != count.value_or(accessor->count))
+        return bad("accessor " + std::to_string(accessor_index) + " does not fit the instances of node " +
+                   std::to_string(index));
+      count = accessor->count;
+      return accessors_.components<double>(accessor_index);
+    };
+    VKMESH_TRY(const std::vector<double> translations, values("TRANSLATION", 3));
+    VKMESH_TRY(const std::vector<double> rotations, values("ROTATION", 4));
+    VKMESH_TRY(const std::vector<double> scales, values("SCALE", 3));
+    for (std::size_t i = 0; i < count.value_or(1); ++i) {
+      tinygltf::Node instance;
+      const auto take = [&](const std::vector<double>& from, std::size_t width, std::vector<double>& to) {
+        if (!from.empty())
+          to.assign(from.begin() + static_cast<std::ptrdiff_t>(width * i),
+                    from.begin() + static_cast<std::ptrdiff_t>(width * (i + 1)));
+      };
+      take(translations, 3, instance.translation);
+      take(rotations, 4, instance.rotation);
+      take(scales, 3, instance.scale);
+      dmat4 local(1);
+      VKMESH_CHECK(transform(instance, index, local));
+      VKMESH_CHECK(add_mesh(node.mesh, world * local));
     }
     return {};
   }
@@ -666,17 +784,20 @@ class SceneReader {
     return {};
   }
 
+  /// Normals go with the inverse transpose; up to their length that is the matrix of cofactors, which always
+  /// exists.
+  static dmat3 normal_matrix(const dmat3& linear) {
+    const dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                          glm::cross(linear[0], linear[1]));
+    return glm::determinant(linear) < 0 ? -cofactors : cofactors;
+  }
+
   Result<void> add_mesh(int index, const dmat4& world) {
     if (index < 0 || static_cast<std::size_t>(index) >= model_.meshes.size())
       return bad("mesh " + std::to_string(index) + " of " + std::to_string(model_.meshes.size()) +
                  " is named");
     const dmat3 linear(world);
-    // Normals go with the inverse transpose; up to their length that is the matrix of cofactors, which always
-    // exists.
-    const bool mirrored = glm::determinant(linear) < 0;
-    const dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                          glm::cross(linear[0], linear[1]));
-    place_ = {world, mirrored ? -cofactors : cofactors, mirrored, world == dmat4(1)};
+    place_ = {world, normal_matrix(linear), glm::determinant(linear) < 0, world == dmat4(1)};
     // Primitives of one mesh that name the same accessors have their points in common.
     std::map<std::map<std::string, int>, std::uint32_t> first_points;
     for (const tinygltf::Primitive& primitive : model_.meshes[static_cast<std::size_t>(index)].primitives)
@@ -744,10 +865,15 @@ class SceneReader {
       return bad("accessor " + std::to_string(position) + " holds no positions");
     if (before + accessor->count > kMaxElements)
       return bad("there are more points than 32-bit indices can number");
+    VKMESH_TRY(poses_, poses(primitive, accessor->count));
     for (std::size_t i = 0; i < accessor->count; ++i) {
-      Vec3 p(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
-      if (!place_.identity) p = Vec3(DVec3(place_.world * dvec4(DVec3(p), 1)));
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      DVec3 exact(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
+      if (!poses_.empty())
+        exact = DVec3(poses_[i] * dvec4(exact, 1));
+      else if (!place_.identity)
+        exact = DVec3(place_.world * dvec4(exact, 1));
+      const Vec3 p = source_.positions->place(exact);
+      if (!all_finite(p))
         return bad("point " + std::to_string(i) + " of accessor " + std::to_string(position) +
                    " has a coordinate that is not finite");
       mesh_.points.push_back(p);
@@ -757,8 +883,38 @@ class SceneReader {
     return {};
   }
 
+  /// The matrix that the joints give each point; none where nothing poses them.
+  Result<std::vector<dmat4>> poses(const tinygltf::Primitive& primitive, std::size_t points) {
+    std::vector<dmat4> found;
+    if (joints_.empty()) return found;
+    std::vector<double> sums;
+    for (int set = 0;; ++set) {
+      const auto joints = primitive.attributes.find("JOINTS_" + std::to_string(set));
+      const auto weights = primitive.attributes.find("WEIGHTS_" + std::to_string(set));
+      if (joints == primitive.attributes.end() || weights == primitive.attributes.end()) break;
+      VKMESH_TRY(const std::vector<double> of_point, accessors_.components<double>(joints->second));
+      VKMESH_TRY(const std::vector<double> share, accessors_.components<double>(weights->second));
+      if (of_point.size() != 4 * points || share.size() != 4 * points)
+        return bad("accessor " + std::to_string(joints->second) + " does not fit the joints of " +
+                   std::to_string(points) + " points");
+      found.resize(points, dmat4(0));
+      sums.resize(points);
+      for (std::size_t i = 0; i < 4 * points; ++i) {
+        if (!(share[i] > 0)) continue;
+        if (!(of_point[i] < static_cast<double>(joints_.size())))
+          return bad("accessor " + std::to_string(joints->second) + " names a joint that its skin lacks");
+        found[i / 4] += share[i] * joints_[static_cast<std::size_t>(of_point[i])];
+        sums[i / 4] += share[i];
+      }
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = sums[i] > 0 ? found[i] / sums[i] : dmat4(1);
+    return found;
+  }
+
   Result<void> add_attribute(const std::string& attribute, int index, std::size_t before) {
-    const std::string name = channel_name(attribute);
+    const bool of_skin = attribute.starts_with("JOINTS_") || attribute.starts_with("WEIGHTS_");
+    if (of_skin && !poses_.empty()) return {};  // Told as the skin.
+    const std::string name = gltf_channel_name(attribute);
     if (name.empty()) {
       ignored_attributes_.insert(attribute);
       return {};
@@ -768,14 +924,15 @@ class SceneReader {
     const bool fits = name == "normal"  ? width == 3
                       : name == "uv"    ? width == 2
                       : name == "color" ? width == 3 || width == 4
-                                        : width > 0;
+                                        : width > 0 && width <= 4;
     if (!fits || accessor->count != mesh_.points.size() - before)
       return bad("accessor " + std::to_string(index) + " does not fit the attribute " + attribute + " of " +
                  std::to_string(mesh_.points.size() - before) + " points");
     VKMESH_TRY(std::vector<float> values, accessors_.components<float>(index));
-    if (name == "normal" && !place_.identity)
+    if (name == "normal" && (!place_.identity || !poses_.empty()))
       for (std::size_t i = 0; i < values.size(); i += 3) {
-        const DVec3 n = place_.normals * DVec3(values[i], values[i + 1], values[i + 2]);
+        const dmat3 turn = poses_.empty() ? place_.normals : normal_matrix(dmat3(poses_[i / 3]));
+        const DVec3 n = turn * DVec3(values[i], values[i + 1], values[i + 2]);
         const double length = glm::length(n);
         const Vec3 unit = length > 0 ? Vec3(n / length) : Vec3(0);
         for (int axis = 0; axis < 3; ++axis) values[i + static_cast<std::size_t>(axis)] = unit[axis];
@@ -838,16 +995,16 @@ class SceneReader {
       if (without > 0) channel.labels.emplace_back();
       mesh_.face_channels.push_back(std::move(channel));
     }
-    const auto note = [&](std::size_t count, const std::string& what) {
-      if (count > 0) notes_.push_back(std::to_string(count) + " " + what);
+    const auto note = [&](std::size_t count, const char* code, const std::string& what) {
+      if (count > 0) notes_.push_back({code, std::to_string(count) + " " + what});
     };
-    note(lines_, "primitives of lines ignored");
-    note(without_position_, "primitives without positions ignored");
-    note(morphed_, "primitives with morph targets read without them");
-    note(left_over_, "corners that complete no triangle ignored");
-    note(turns_, "triangles without area that join strips ignored");
+    note(lines_, "dropped.lines", "primitives of lines ignored");
+    note(without_position_, "dropped.primitives", "primitives without positions ignored");
+    note(morphed_, "dropped.morph_targets", "primitives with morph targets read without them");
+    note(left_over_, "skipped.corners", "corners that complete no triangle ignored");
+    note(turns_, "skipped.strip_turns", "triangles without area that join strips ignored");
     for (const std::string& attribute : ignored_attributes_)
-      notes_.push_back("attribute " + attribute + " ignored");
+      notes_.push_back({"dropped." + attribute, "attribute " + attribute + " ignored"});
   }
 
   struct Place {
@@ -862,6 +1019,9 @@ class SceneReader {
   Notes& notes_;
   AccessorReader accessors_;
   Place place_{dmat4(1), dmat3(1), false, true};
+  std::vector<dmat4> worlds_;  ///< Of each node.
+  std::vector<dmat4> poses_;   ///< Of each point of the present primitive, where a skin poses it.
+  std::vector<dmat4> joints_;  ///< Of the skin that poses the present mesh; empty without one.
   IndexedFaceSet mesh_;
   std::map<std::string, GrowingChannel> channels_;
   std::vector<std::uint32_t> face_materials_;  ///< materials_.size() for none.
@@ -869,398 +1029,18 @@ class SceneReader {
   std::size_t lines_ = 0, without_position_ = 0, morphed_ = 0, left_over_ = 0, turns_ = 0;
 };
 
-// ---------------------------------------------------------------------------------------------------- the
-// writer
-
-/// Passes on what is written to a stream.
-class OutputStream : public std::streambuf {
- public:
-  explicit OutputStream(Output& out) : out_(out) {}
-
- private:
-  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
-    out_.put({bytes, static_cast<std::size_t>(count)});
-    return count;
-  }
-  int_type overflow(int_type c) override {
-    const char byte = traits_type::to_char_type(c);
-    out_.put({&byte, 1});
-    return c;
-  }
-
-  Output& out_;
-};
-
-/// Text as JSON must have it: bytes that are no UTF-8 become the replacement character.
-std::string valid_utf8(const std::string& text) {
-  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-  return Json::parse(quoted).get<std::string>();
-}
-
-/// "_QUALITY" for "quality"; empty for a name that would not come back.
-std::string attribute_name(const std::string& channel) {
-  std::string name = "_";
-  for (const char c : channel) {
-    if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_') return "";
-    name += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  }
-  return name.size() > 1 && channel_name(name) == channel ? name : "";
-}
-
-/// Normals whose squared length is this near to 1 are unit vectors.
-constexpr double kUnit = 1e-5;
-
-class GltfWriter {
- public:
-  GltfWriter(const IndexedFaceSet& mesh, const WriteOptions& options, Notes& notes)
-      : mesh_(mesh), options_(options), notes_(notes) {}
-
-  Result<void> write(Output& out) {
-    if (mesh_.points.empty()) return fail(ErrorCode::kUnsuitable, "glTF holds no mesh without points");
-    choose();
-    split();
-    put_positions();
-    put_normals();
-    put_uv();
-    put_colors();
-    for (const Channel* c : custom_) put_custom(*c);
-    put_faces();
-    if (bytes_.size() > kLargest) return fail(ErrorCode::kUnsuitable, "a glTF buffer holds less than 4 GiB");
-
-    model_.asset.version = "2.0";
-    if (const std::vector<std::string> comment = comment_lines(options_.comment); !comment.empty())
-      model_.asset.generator = valid_utf8(comment.front());
-    tinygltf::Buffer buffer;
-    buffer.data = std::move(bytes_);
-    model_.buffers.push_back(std::move(buffer));
-    tinygltf::Node node;
-    node.mesh = 0;
-    model_.nodes.push_back(node);
-    tinygltf::Scene scene;
-    scene.nodes = {0};
-    model_.scenes.push_back(scene);
-    model_.defaultScene = 0;
-    OutputStream streambuf(out);
-    std::ostream stream(&streambuf);
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, true,
-                                                options_.encoding != FileEncoding::kAscii);
-    return {};
-  }
-
- private:
-  /// Leaves room for the JSON in the 32-bit length of a GLB file.
-  static constexpr std::size_t kLargest = 0xffffffffu - (std::size_t{1} << 24);
-
-  /// An attribute of points or corners that goes into the file.
-  struct Attribute {
-    const Channel* channel = nullptr;
-    bool of_corners = false;
-    explicit operator bool() const { return channel != nullptr; }
-  };
-
-  /// Settles which channels are written, and notes the others.
-  void choose() {
-    const auto pick = [&](const char* name, unsigned least, unsigned most) -> Attribute {
-      const Channel* c = mesh_.corners.empty() ? nullptr : find_channel(mesh_.corner_channels, name);
-      if (c != nullptr && c->components >= least && c->components <= most && finite(*c)) return {c, true};
-      c = find_channel(mesh_.point_channels, name);
-      if (c != nullptr && c->components >= least && c->components <= most && finite(*c)) return {c, false};
-      return {};
-    };
-    normal_ = pick("normal", 3, 3);
-    uv_ = pick("uv", 2, 2);
-    color_ = pick("color", 3, 4);
-    for (std::size_t i = 0; normal_ && i < normal_.channel->scalar_count(); i += 3)
-      if (!(squared_length(*normal_.channel, i) > 0)) {
-        note_left_out(notes_, normal_.of_corners ? "corner" : "point", *normal_.channel,
-                      "glTF holds unit normals, and some here have no length");
-        zero_normals_ = normal_.channel;
-        normal_ = {};
-      }
-    const auto taken = [&](const Channel& c) {
-      return &c == normal_.channel || &c == uv_.channel || &c == color_.channel || &c == zero_normals_;
-    };
-    for (const Channel& c : mesh_.point_channels) {
-      if (taken(c)) continue;
-      if (!finite(c))
-        note_left_out(notes_, "point", c, "some of its values are not finite");
-      else if (c.components >= 1 && c.components <= 4 && !attribute_name(c.name).empty() &&
-               c.labels.empty() && !std::holds_alternative<std::vector<double>>(c.values) &&
-               !std::holds_alternative<std::vector<std::int32_t>>(c.values) &&
-               !std::holds_alternative<std::vector<std::uint32_t>>(c.values))
-        custom_.push_back(&c);
-      else
-        note_left_out(notes_, "point", c, "glTF holds none of that name and type");
-    }
-    for (const Channel& c : mesh_.corner_channels)
-      if (!taken(c))
-        note_left_out(notes_, "corner", c,
-                      finite(c) ? "glTF holds normals, uv and colours of corners"
-                                : "some of its values are not finite");
-    for (const Channel& c : mesh_.face_channels) {
-      if (c.name == "material" && numbers_labels(c))
-        material_ = &c;
-      else
-        note_left_out(notes_, "face", c, "glTF holds named materials of faces");
-    }
-  }
-
-  static bool finite(const Channel& channel) {
-    const std::size_t count = channel.scalar_count();
-    for (std::size_t i = 0; i < count; ++i)
-      if (!std::isfinite(channel_float(channel, i))) return false;
-    return true;
-  }
-
-  static double squared_length(const Channel& channel, std::size_t i) {
-    const DVec3 n(channel_float(channel, i), channel_float(channel, i + 1), channel_float(channel, i + 2));
-    return glm::dot(n, n);
-  }
-
-  static std::optional<std::size_t> label_of(const Channel& channel, std::size_t face) {
-    const double value =
-        std::visit([&](const auto& v) { return static_cast<double>(v[face]); }, channel.values);
-    if (!(value >= 0 && value < static_cast<double>(channel.labels.size())) || value != std::floor(value))
-      return std::nullopt;
-    return static_cast<std::size_t>(value);
-  }
-
-  bool numbers_labels(const Channel& channel) const {
-    if (channel.components != 1) return false;
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f)
-      if (!label_of(channel, f)) return false;
-    return true;
-  }
-
-  /// Where the attribute of a vertex of the file stands.
-  [[nodiscard]] std::size_t source_of(const Attribute& attribute, std::size_t vertex) const {
-    return attribute.of_corners ? vertex_corner_[vertex] : vertex_point_[vertex];
-  }
-
-  /// A vertex for each point; or, where corners have attributes, for each different row of those around a
-  /// point, in order of first appearance, and for each point without corners at last.
-  void split() {
-    indices_ = mesh_.corners;
-    vertex_point_.resize(mesh_.points.size());
-    for (std::size_t i = 0; i < vertex_point_.size(); ++i) vertex_point_[i] = static_cast<std::uint32_t>(i);
-    const std::array<Attribute, 3> attributes = {normal_, uv_, color_};
-    if (std::none_of(attributes.begin(), attributes.end(),
-                     [](const Attribute& a) { return a && a.of_corners; }))
-      return;
-    using Row = std::array<float, 11>;  // The point in two exact halves, a normal, uv, a colour.
-    DistinctRows<11> distinct;
-    std::vector<Row> rows;
-    std::vector<bool> used(mesh_.points.size());
-    vertex_point_.clear();
-    for (std::size_t c = 0; c < mesh_.corners.size(); ++c) {
-      const std::uint32_t point = mesh_.corners[c];
-      Row row = {static_cast<float>(point & 0xffffu), static_cast<float>(point >> 16)};
-      std::size_t at = 2;
-      for (const Attribute& a : attributes)
-        if (a && a.of_corners)
-          for (unsigned k = 0; k < a.channel->components; ++k)
-            row[at++] = channel_float(*a.channel, c * a.channel->components + k);
-      indices_[c] = distinct.number(row.data(), rows);
-      used[point] = true;
-      if (indices_[c] == vertex_point_.size()) {
-        vertex_point_.push_back(point);
-        vertex_corner_.push_back(static_cast<std::uint32_t>(c));
-      }
-    }
-    // No corner gives them attributes, so they have none.
-    std::size_t alone = 0;
-    for (std::size_t i = 0; i < used.size(); ++i) alone += !used[i];
-    if (alone > 0)
-      notes_.push_back(std::to_string(alone) +
-                       " points without a face left out: they have no attributes of corners");
-  }
-
-  /// A buffer view and accessor over elements of `width` components that were appended from byte `begin` on.
-  template <class T>
-  int accessor(std::size_t begin, std::size_t count, unsigned width, std::size_t stride, int target,
-               bool normalized) {
-    static constexpr int kTypes[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
-                                     TINYGLTF_TYPE_VEC4};
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = begin;
-    view.byteLength = bytes_.size() - begin;
-    view.byteStride = stride == width * sizeof(T) ? 0 : stride;
-    view.target = target;
-    model_.bufferViews.push_back(view);
-    tinygltf::Accessor a;
-    a.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
-    a.componentType = std::is_same_v<T, float>           ? TINYGLTF_COMPONENT_TYPE_FLOAT
-                      : std::is_same_v<T, std::int8_t>   ? TINYGLTF_COMPONENT_TYPE_BYTE
-                      : std::is_same_v<T, std::uint8_t>  ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
-                      : std::is_same_v<T, std::int16_t>  ? TINYGLTF_COMPONENT_TYPE_SHORT
-                      : std::is_same_v<T, std::uint16_t> ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
-                                                         : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    a.count = count;
-    a.type = kTypes[width - 1];
-    a.normalized = normalized;
-    model_.accessors.push_back(a);
-    // Every view begins at a multiple of 4.
-    bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    return static_cast<int>(model_.accessors.size()) - 1;
-  }
-
-  template <class T>
-  void append(T value) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(value));
-  }
-
-  /// One element for each vertex: value(vertex, k) gives its component k. Elements begin at multiples of 4
-  /// bytes.
-  template <class T, class Value>
-  int put_vertices(const std::string& name, unsigned width, bool normalized, Value&& value) {
-    const std::size_t begin = bytes_.size(), stride = (width * sizeof(T) + 3) / 4 * 4;
-    for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
-      for (unsigned k = 0; k < width; ++k) append(static_cast<T>(value(v, k)));
-      bytes_.resize(begin + (v + 1) * stride);
-    }
-    const int index =
-        accessor<T>(begin, vertex_point_.size(), width, stride, TINYGLTF_TARGET_ARRAY_BUFFER, normalized);
-    attributes_[name] = index;
-    return index;
-  }
-
-  void put_positions() {
-    const int index = put_vertices<float>("POSITION", 3, false, [&](std::size_t v, unsigned k) {
-      return mesh_.points[vertex_point_[v]][static_cast<int>(k)];
-    });
-    Vec3 low = mesh_.points[vertex_point_[0]], high = low;
-    for (const std::uint32_t point : vertex_point_)
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], mesh_.points[point][axis]);
-        high[axis] = std::max(high[axis], mesh_.points[point][axis]);
-      }
-    tinygltf::Accessor& a = model_.accessors[static_cast<std::size_t>(index)];
-    a.minValues = {low.x, low.y, low.z};
-    a.maxValues = {high.x, high.y, high.z};
-  }
-
-  void put_normals() {
-    if (!normal_) return;
-    std::size_t scaled = 0;
-    put_vertices<float>("NORMAL", 3, false, [&](std::size_t v, unsigned k) {
-      const std::size_t from = 3 * source_of(normal_, v);
-      const double squared = squared_length(*normal_.channel, from);
-      const float value = channel_float(*normal_.channel, from + k);
-      if (std::abs(squared - 1) <= kUnit) return value;
-      scaled += k == 0;
-      return static_cast<float>(value / std::sqrt(squared));
-    });
-    if (scaled > 0) notes_.push_back(std::to_string(scaled) + " normals brought to unit length");
-  }
-
-  void put_uv() {
-    if (!uv_) return;
-    // Downwards in glTF, upwards here.
-    put_vertices<float>("TEXCOORD_0", 2, false, [&](std::size_t v, unsigned k) {
-      const float value = channel_float(*uv_.channel, 2 * source_of(uv_, v) + k);
-      return k == 1 ? 1 - value : value;
-    });
-  }
-
-  void put_colors() {
-    if (!color_) return;
-    const Channel& c = *color_.channel;
-    const auto from = [&](std::size_t v, unsigned k) { return source_of(color_, v) * c.components + k; };
-    if (std::holds_alternative<std::vector<std::uint8_t>>(c.values)) {
-      put_vertices<std::uint8_t>("COLOR_0", c.components, true,
-                                 [&](std::size_t v, unsigned k) { return color_byte(c, from(v, k)); });
-      return;
-    }
-    std::size_t clamped = 0;
-    put_vertices<float>("COLOR_0", c.components, false, [&](std::size_t v, unsigned k) {
-      const float value = color_fraction(c, from(v, k)), within = std::clamp(value, 0.0f, 1.0f);
-      clamped += value != within;
-      return within;
-    });
-    if (clamped > 0)
-      notes_.push_back(std::to_string(clamped) + " components of colours brought between 0 and 1");
-  }
-
-  void put_custom(const Channel& channel) {
-    std::visit(
-        [&](const auto& values) {
-          using T = std::decay_t<decltype(values[0])>;
-          if constexpr (std::is_same_v<T, float> || sizeof(T) < 4)
-            put_vertices<T>(
-                attribute_name(channel.name), channel.components, false,
-                [&](std::size_t v, unsigned k) { return values[vertex_point_[v] * channel.components + k]; });
-        },
-        channel.values);
-  }
-
-  /// One primitive for each material that faces have, in the order of the labels; faces keep their order
-  /// within it.
-  void put_faces() {
-    model_.meshes.emplace_back();
-    if (mesh_.face_count() == 0) {
-      add_primitive(TINYGLTF_MODE_POINTS, -1, -1);
-      return;
-    }
-    if (material_ == nullptr) {
-      add_primitive(TINYGLTF_MODE_TRIANGLES, put_indices(indices_), -1);
-      return;
-    }
-    std::vector<std::vector<std::uint32_t>> of_label(material_->labels.size());
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f)
-      for (std::size_t k = 0; k < 3; ++k) of_label[*label_of(*material_, f)].push_back(indices_[3 * f + k]);
-    for (std::size_t label = 0; label < of_label.size(); ++label) {
-      // The empty label stands for no material.
-      int index = -1;
-      if (!material_->labels[label].empty()) {
-        index = static_cast<int>(model_.materials.size());
-        model_.materials.emplace_back();
-        model_.materials.back().name = valid_utf8(material_->labels[label]);
-      }
-      if (!of_label[label].empty())
-        add_primitive(TINYGLTF_MODE_TRIANGLES, put_indices(of_label[label]), index);
-    }
-  }
-
-  int put_indices(const std::vector<std::uint32_t>& indices) {
-    const std::size_t begin = bytes_.size();
-    // 65,535 restarts primitives, and so is no index.
-    const bool small = vertex_point_.size() <= 0xffff;
-    for (const std::uint32_t i : indices) {
-      if (small)
-        append(static_cast<std::uint16_t>(i));
-      else
-        append(i);
-    }
-    constexpr int kTarget = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-    return small ? accessor<std::uint16_t>(begin, indices.size(), 1, sizeof(std::uint16_t), kTarget, false)
-                 : accessor<std::uint32_t>(begin, indices.size(), 1, sizeof(std::uint32_t), kTarget, false);
-  }
-
-  void add_primitive(int mode, int indices, int material) {
-    tinygltf::Primitive primitive;
-    primitive.attributes = attributes_;
-    primitive.indices = indices;
-    primitive.material = material;
-    primitive.mode = mode;
-    model_.meshes.back().primitives.push_back(primitive);
-  }
-
-  const IndexedFaceSet& mesh_;
-  const WriteOptions& options_;
-  Notes& notes_;
-  Attribute normal_, uv_, color_;
-  const Channel* zero_normals_ = nullptr;
-  std::vector<const Channel*> custom_;
-  const Channel* material_ = nullptr;
-  std::vector<std::uint32_t> indices_, vertex_point_, vertex_corner_;
-  std::vector<unsigned char> bytes_;
-  std::map<std::string, int> attributes_;
-  tinygltf::Model model_;
-};
-
 }  // namespace
+
+std::string gltf_channel_name(const std::string& attribute) {
+  if (attribute == "NORMAL") return "normal";
+  if (attribute == "TEXCOORD_0") return "uv";
+  if (attribute == "COLOR_0") return "color";
+  if (!attribute.starts_with('_')) return "";
+  std::string name = attribute.substr(1);
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return name == "normal" || name == "uv" || name == "color" ? "" : name;
+}
 
 bool is_gltf(std::string_view bytes) {
   if (bytes.starts_with("glTF")) return true;
@@ -1282,10 +1062,6 @@ Result<MeshFile> parse_gltf(const Source& source) {
   VKMESH_CHECK(AssetReader(source, container, file.notes).read(asset));
   VKMESH_TRY(file.geometry, SceneReader(source, asset, file.notes).read());
   return file;
-}
-
-Result<void> encode_gltf(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
-  return GltfWriter(mesh, options, notes).write(out);
 }
 
 }  // namespace vkmesh::detail
