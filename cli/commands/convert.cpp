@@ -1,5 +1,9 @@
 // vkmesh convert: from one file format into another.
+#include <string>
+#include <utility>
+
 #include <vkmesh/mesh/triangulate.h>
+#include <vkmesh/repair/weld.h>
 
 #include "commands.h"
 #include "passes/backend.h"
@@ -13,11 +17,38 @@ struct ConvertOptions {
   bool ascii = false;
 };
 
+/// The option given that judges or mends faces; empty for none.
+std::string judging_option(const ConsolidateOptions& options) {
+  if (options.strict) return "--strict";
+  if (!options.keep_isolated_points) return "--drop-isolated";
+  return options.cut_non_orientable ? "" : "--refuse-non-orientable";
+}
+
+Result<void> weld_cloud(Job& job, const WeldOptions& options, IndexedFaceSet& mesh) {
+  VKMESH_TRY(Welded welded, job.timed("consolidate", [&] { return weld(mesh, options); }));
+  mesh = std::move(welded.mesh);
+  job.json()["report"] = {{"welded_points", welded.merged_points},
+                          {"largest_weld_move", welded.largest_move}};
+  if (welded.merged_points > 0)
+    job.row("mended", count_of(welded.merged_points, "point") + " welded to others");
+  return {};
+}
+
 Result<void> run(Job& job, const ConvertOptions& options) {
   use_host(job);
   VKMESH_CHECK(job.check_output());
+  const ConsolidateOptions& consolidation = job.options().consolidation;
+  const std::string judging = judging_option(consolidation);
+  if (options.as_is && (consolidation.weld || !judging.empty()))
+    return fail(ErrorCode::kUsage, (judging.empty() ? "--weld" : judging) +
+                                       " cannot act with --as-is, which judges and mends nothing");
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  if (!options.as_is && mesh.face_count() > 0) {
+  if (mesh.face_count() == 0) {
+    if (!judging.empty())
+      return fail(ErrorCode::kUsage, judging + " cannot act: the input is a point cloud, without faces",
+                  {job.options().input, {}, {}});
+    if (consolidation.weld) VKMESH_CHECK(weld_cloud(job, *consolidation.weld, mesh));
+  } else if (!options.as_is) {
     VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate(mesh));
     if (job.json()["report"]["manifold"] == true) job.row("manifold", "yes, compatibly oriented");
   }
@@ -25,6 +56,10 @@ Result<void> run(Job& job, const ConvertOptions& options) {
     const std::size_t before = mesh.face_count();
     VKMESH_TRY(Triangulated cut, job.timed("compute", [&] { return triangulate(mesh); }));
     mesh = std::move(cut.mesh);
+    if (!options.as_is) {
+      // Where no diagonal was free, the triangles are mended as any input is.
+      VKMESH_TRY(const HalfEdgeMesh triangles, job.consolidate_again(mesh));
+    }
     job.row("triangulated", count_of(before, "face") + " into " + count_of(mesh.face_count(), "triangle"));
   }
   job.json()["result"]["triangulated"] = options.triangulate;

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 
 #include <vkmesh/analysis/topology.h>
+#include <vkmesh/mesh/triangulate.h>
 
 #include "commands.h"
 #include "passes/backend.h"
@@ -12,25 +14,20 @@
 namespace vkmesh::cli {
 namespace {
 
-/// Sum of the areas of the faces, each by its Newell vector. O(corners).
-double surface_area(const IndexedFaceSet& mesh) {
+/// Sum of the areas of the triangles. O(faces).
+double surface_area(const IndexedFaceSet& triangles) {
   double sum = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.face(f);
-    if (face.size() < 3) continue;
-    const DVec3 base(mesh.points[face[0]]);
-    DVec3 twice(0.0);
-    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
-      const DVec3 a = DVec3(mesh.points[face[i]]) - base;
-      const DVec3 b = DVec3(mesh.points[face[i + 1]]) - base;
-      twice += DVec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-    }
+  for (std::size_t f = 0; f < triangles.face_count(); ++f) {
+    const auto face = triangles.face(f);
+    const DVec3 base(triangles.points[face[0]]);
+    const DVec3 a = DVec3(triangles.points[face[1]]) - base, b = DVec3(triangles.points[face[2]]) - base;
+    const DVec3 twice(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
     sum += std::sqrt(twice.x * twice.x + twice.y * twice.y + twice.z * twice.z) / 2;
   }
   return sum;
 }
 
-/// The signed volume inside a closed, oriented surface: a sum over the fans of its faces. O(corners).
+/// The signed volume inside a closed, oriented surface of triangles. O(faces).
 double enclosed_volume(const IndexedFaceSet& mesh) {
   if (mesh.points.empty()) return 0;
   const DVec3 origin(mesh.points[0]);
@@ -87,9 +84,19 @@ std::string defects_of(const Topology& t, const ElementDefects& d) {
   return text;
 }
 
-std::string triple(const Vec3& p) {
-  return "(" + brief(static_cast<double>(p.x)) + ", " + brief(static_cast<double>(p.y)) + ", " +
-         brief(static_cast<double>(p.z)) + ")";
+/// A corner of the bounds, with as many digits as tell a thousandth of their size.
+std::string triple(const DVec3& p, double size) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double larger = std::max(std::abs(p[axis]), size);
+    int digits = 3;
+    if (size > 0 && larger < HUGE_VAL)
+      digits = std::clamp(4 + static_cast<int>(std::floor(std::log10(larger / size))), 3, 17);
+    char number[64];
+    std::snprintf(number, sizeof number, "%.*g", digits, p[axis]);
+    text += (axis == 0 ? "(" : ", ") + (digits > 4 ? std::string(number) : brief(p[axis]));
+  }
+  return text + ")";
 }
 
 std::string listed(const std::vector<Channel>& channels, const char* of) {
@@ -164,11 +171,18 @@ Result<void> run(Job& job) {
       job.row("", "and " + grouped(topology.components.size() - kShown) + " more (--json lists them)");
   }
 
-  const double area = surface_area(mesh);
+  // Polygons that are not flat have the area of the triangles that every command cuts them into.
+  IndexedFaceSet cut;
+  if (!mesh.is_triangles()) {
+    VKMESH_TRY(Triangulated triangulated, job.timed("compute", [&] { return triangulate(mesh); }));
+    cut = std::move(triangulated.mesh);
+  }
+  const IndexedFaceSet& surface = mesh.is_triangles() ? mesh : cut;
+  const double area = surface_area(surface);
   result["area"] = area;
   result["volume"] = nullptr;
   if (whole.closed() && whole.oriented() && defects.degenerate_faces == 0) {
-    const double volume = enclosed_volume(mesh);
+    const double volume = enclosed_volume(surface);
     result["volume"] = volume;
     job.row("volume", brief(volume));
   }
@@ -179,8 +193,17 @@ Result<void> run(Job& job) {
       low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    result["bounds"] = {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}};
-    job.row("bounds", triple(low) + " to " + triple(high));
+    if (job.offset() == DVec3(0.0)) {
+      result["bounds"] = {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}};
+    } else {
+      const DVec3 exact_low = DVec3(low) + job.offset(), exact_high = DVec3(high) + job.offset();
+      result["bounds"] = {{"min", {exact_low.x, exact_low.y, exact_low.z}},
+                          {"max", {exact_high.x, exact_high.y, exact_high.z}}};
+    }
+    const DVec3 extent = DVec3(high) - DVec3(low);
+    const double size = std::max({extent.x, extent.y, extent.z});
+    job.row("bounds",
+            triple(DVec3(low) + job.offset(), size) + " to " + triple(DVec3(high) + job.offset(), size));
   }
   job.row("area", brief(area));
   return {};

@@ -70,7 +70,6 @@ std::vector<Case> cases() {
        3, ":", ""},
       {"promises.off", "OFF\n1000000000000 0 0\n0 0 0\n", 3, ":", ""},
       {"promises.stl", stl, 3, ":", ""},
-      {"one_corner.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n1 0\n", 3, ":7:", "corner"},
       {"repeated.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n", 4, "", "degenerate"},
       {"repeated_in_quad.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 1\n", 4, "", "degenerate"},
       {"fin.off", kFinOff, 4, "", "three or more faces"},

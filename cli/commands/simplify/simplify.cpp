@@ -116,6 +116,16 @@ Result<void> lock_marked(const IndexedFaceSet& mesh, const std::string& name, De
   return {};
 }
 
+/// Points that no face uses, which a decimation does not know.
+std::vector<std::uint32_t> isolated_points(const HalfEdgeMesh& mesh, std::size_t points) {
+  std::vector<bool> used(points);
+  for (const std::uint32_t p : mesh.origins()) used[p] = true;
+  std::vector<std::uint32_t> found;
+  for (std::size_t p = 0; p < points; ++p)
+    if (!used[p]) found.push_back(static_cast<std::uint32_t>(p));
+  return found;
+}
+
 Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteria& criteria) {
   if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
       !options.time_limit)
@@ -133,6 +143,9 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   use_host(job);
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  if (mesh.face_count() == 0)
+    return fail(ErrorCode::kUnsuitable, "a point cloud has no faces to simplify",
+                {job.options().input, {}, {}});
   VKMESH_TRY(HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   if (!mesh.is_triangles()) {
     job.note("polygons were cut into triangles");
@@ -150,6 +163,7 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   mesh = {};
 
   const std::size_t faces = half_edges.face_count();
+  const std::vector<std::uint32_t> isolated = isolated_points(half_edges, points.size());
   VKMESH_TRY(Decimated decimated, job.timed("compute", [&] {
     return decimate(half_edges, points, decimation, job.progress("simplifying"));
   }));
@@ -164,6 +178,8 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   } else {
     output.points = std::move(decimated.positions);
     attributes.give(decimated, output);
+    attributes.append_points(isolated, output);
+    for (const std::uint32_t p : isolated) output.points.push_back(points[p]);
     if (attributes.has_points() && !points_stay)
       job.note(
           "points were moved: each has the attributes of a point that it stands for, unless --attribute "
@@ -199,6 +215,9 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   if (decimated.pruned_components > 0)
     job.row("pruned", count_of(decimated.pruned_components, "component") + " of " +
                           count_of(decimated.pruned_faces, "triangle"));
+  if (!isolated.empty())
+    job.row("isolated",
+            count_of(isolated.size(), "point") + " that no face uses kept (--drop-isolated leaves them out)");
   job.row("stopped", why(decimated.stop, options, decimated.held));
   job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
                            " that would break the manifold, " + grouped(decimated.rejected_fold_over) +

@@ -154,6 +154,20 @@ void SimplifyAttributes::give(const Decimated& decimated, IndexedFaceSet& output
   }
 }
 
+void SimplifyAttributes::append_points(const std::vector<std::uint32_t>& points,
+                                       IndexedFaceSet& output) const {
+  if (points.empty()) return;
+  for (std::size_t i = 0; i < output.point_channels.size(); ++i) {
+    const Channel more = gather(point_channels_[i], points);
+    std::visit(
+        [&](auto& values) {
+          const auto& added = std::get<std::remove_cvref_t<decltype(values)>>(more.values);
+          values.insert(values.end(), added.begin(), added.end());
+        },
+        output.point_channels[i].values);
+  }
+}
+
 void SimplifyAttributes::give_index_only(const Decimated& decimated, IndexedFaceSet& output) const {
   output.point_channels = point_channels_;
   give_faces(decimated, output);

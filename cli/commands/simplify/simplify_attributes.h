@@ -27,7 +27,9 @@ class SimplifyAttributes {
 
   /// Sets the channels of the result, whose points and corners are there.
   void give(const Decimated& decimated, IndexedFaceSet& output) const;
-  /// The same for faces over all points of the input.
+  /// Appends what these points of the input have to the channels of points.
+  void append_points(const std::vector<std::uint32_t>& points, IndexedFaceSet& output) const;
+  /// As give(), for faces over all points of the input.
   void give_index_only(const Decimated& decimated, IndexedFaceSet& output) const;
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
