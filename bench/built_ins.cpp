@@ -19,49 +19,15 @@
 #include <vkmesh/repair/consolidate.h>
 
 #include "bench/contestants.h"
+#include "built_in_shaders.h"
 #include "core/device.h"
-#include "passes/params.h"
 
 namespace vkmesh::bench {
 namespace {
 
-using std::uint32_t;
-#include "shaders/bilateral_faces.spv.h"
-#include "shaders/bilateral_mollify.spv.h"
-#include "shaders/bilateral_move.spv.h"
-#include "shaders/bilateral_normals.spv.h"
-#include "shaders/collapse_costs.spv.h"
-#include "shaders/cotangent_smoothing.spv.h"
-#include "shaders/curvatures.spv.h"
-#include "shaders/dihedral_angles.spv.h"
-#include "shaders/laplacian_smoothing.spv.h"
-#include "shaders/quadrics.spv.h"
-#include "shaders/swap_scores.spv.h"
-#include "shaders/triangle_areas.spv.h"
-#include "shaders/triangle_normals.spv.h"
-#include "shaders/vertex_normals.spv.h"
-#include "shaders/vertex_normals_by_angle.spv.h"
-
 Result<void> use_built_ins(Context& context) {
-  const KernelSource sources[] = {
-      {"bilateral_faces", k_bilateral_faces_spirv, sizeof(kernels::BilateralFacesParams)},
-      {"bilateral_mollify", k_bilateral_mollify_spirv, sizeof(kernels::BilateralSumParams)},
-      {"bilateral_move", k_bilateral_move_spirv, sizeof(kernels::BilateralSumParams)},
-      {"bilateral_normals", k_bilateral_normals_spirv, sizeof(kernels::BilateralNormalsParams)},
-      {"collapse_costs", k_collapse_costs_spirv, sizeof(kernels::CollapseCostsParams)},
-      {"cotangent_smoothing", k_cotangent_smoothing_spirv, sizeof(kernels::LaplacianSmoothingParams)},
-      {"curvatures", k_curvatures_spirv, sizeof(kernels::CurvaturesParams)},
-      {"dihedral_angles", k_dihedral_angles_spirv, sizeof(kernels::DihedralAnglesParams)},
-      {"laplacian_smoothing", k_laplacian_smoothing_spirv, sizeof(kernels::LaplacianSmoothingParams)},
-      {"quadrics", k_quadrics_spirv, sizeof(kernels::QuadricsParams)},
-      {"swap_scores", k_swap_scores_spirv, sizeof(kernels::SwapScoresParams)},
-      {"triangle_areas", k_triangle_areas_spirv, sizeof(kernels::TrianglesParams)},
-      {"triangle_normals", k_triangle_normals_spirv, sizeof(kernels::TrianglesParams)},
-      {"vertex_normals", k_vertex_normals_spirv, sizeof(kernels::VertexNormalsParams)},
-      {"vertex_normals_by_angle", k_vertex_normals_by_angle_spirv,
-       sizeof(kernels::VertexNormalsByAngleParams)},
-  };
-  for (const KernelSource& source : sources) VKMESH_CHECK(context.device().replace_kernel(source));
+  for (const KernelSource& source : built_in_shaders::kernels())
+    VKMESH_CHECK(context.device().replace_kernel(source));
   return {};
 }
 

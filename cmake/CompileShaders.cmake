@@ -1,35 +1,56 @@
-# vkmesh_compile_shaders(TARGET SHADER... [DEFINES NAME[=TEXT]...]): compiles each shaders/SHADER.comp (a folder and a name) with glslangValidator into the header
-# shaders/NAME.spv.h of the build tree, an array of 32-bit words named k_NAME_spirv, and lets TARGET include it.
-# A name with an extension, SHADER.vert, is that file; its header is NAME_vert.spv.h, its array k_NAME_vert_spirv.
+# vkmesh_compile_shaders(TARGET NAMESPACE FILE... [DEFINES NAME[=TEXT]...]): compiles shaders with glslangValidator and embeds
+# them in TARGET, which includes "NAMESPACE.h". That header declares vkmesh::NAMESPACE::NAME for each NAME.comp, NAME_frag for
+# each NAME.frag, and kernels(), the table of all .comp. Shaders find includes in shaders/ and beside themselves.
 find_program(VKMESH_GLSLANG glslangValidator REQUIRED)
 
-function(vkmesh_compile_shaders target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" DEFINES)
+function(vkmesh_compile_shaders target namespace)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" DEFINES)
   list(TRANSFORM arg_DEFINES PREPEND -D)
-  set(source_dir ${PROJECT_SOURCE_DIR}/shaders)
-  set(output_dir ${CMAKE_CURRENT_BINARY_DIR}/shaders)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/${namespace})
   set(headers)
-  foreach(name IN LISTS arg_UNPARSED_ARGUMENTS)
-    get_filename_component(shader ${name} NAME)
-    get_filename_component(extension ${name} EXT)
-    string(REPLACE "." "_" shader ${shader})
-    set(source ${source_dir}/${name})
-    if(NOT extension)
-      string(APPEND source .comp)
-    endif()
-    set(header ${output_dir}/${shader}.spv.h)
+  foreach(text includes declarations definitions table)
+    set(${text} "")
+  endforeach()
+  foreach(source IN LISTS arg_UNPARSED_ARGUMENTS)
+    get_filename_component(source ${source} ABSOLUTE)
+    get_filename_component(name ${source} NAME)
+    string(REGEX REPLACE "\\.comp$" "" name ${name})
+    string(REPLACE "." "_" name ${name})
+    set(header ${folder}/${name}.spv.h)
     add_custom_command(
       OUTPUT ${header}
-      COMMAND ${CMAKE_COMMAND} -E make_directory ${output_dir}
-      COMMAND ${VKMESH_GLSLANG} --quiet --target-env vulkan1.2 -I${source_dir} -I${PROJECT_SOURCE_DIR}/host/include
-              ${arg_DEFINES}
-              --depfile ${header}.d --vn k_${shader}_spirv -o ${header} ${source}
+      COMMAND ${VKMESH_GLSLANG} --quiet --target-env vulkan1.2 -I${PROJECT_SOURCE_DIR}/shaders
+              -I${PROJECT_SOURCE_DIR}/host/include ${arg_DEFINES} --depfile ${header}.d --vn k_${name} -o ${header} ${source}
       DEPENDS ${source}
       DEPFILE ${header}.d
       COMMENT "Compiling shader ${name}"
       VERBATIM)
     list(APPEND headers ${header})
+    string(APPEND includes "#include \"${header}\"\n")
+    string(APPEND declarations "extern const KernelSource ${name};\n")
+    string(APPEND definitions "constexpr KernelSource ${name}{\"${name}\", k_${name}};\n")
+    if(source MATCHES "\\.comp$")
+      string(APPEND table "${name}, ")
+    endif()
   endforeach()
-  target_sources(${target} PRIVATE ${headers})
+  file(MAKE_DIRECTORY ${folder})
+  set(opening "// Made by cmake/CompileShaders.cmake.\n")
+  file(CONFIGURE OUTPUT ${folder}.h @ONLY CONTENT "${opening}#pragma once
+#include <vkmesh/engine/core/kernel.h>
+namespace vkmesh::${namespace} {
+${declarations}std::span<const KernelSource> kernels();
+}\n")
+  file(CONFIGURE OUTPUT ${folder}.cpp @ONLY CONTENT "${opening}#include <cstdint>
+#include \"${folder}.h\"
+namespace vkmesh::${namespace} {
+namespace {
+using std::uint32_t;
+${includes}}
+${definitions}std::span<const KernelSource> kernels() {
+  static constexpr KernelSource kAll[] = {${table}};
+  return kAll;
+}
+}\n")
+  target_sources(${target} PRIVATE ${folder}.cpp ${headers})
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Every function of the arithmetic on given values, for the check against the host (engine/src/core/canary.cpp).
 #include "lib/kernel.glsl"
+#include "core/canary_params.h"
 
 VKMESH_PUSH_CONSTANTS(CanaryParams);
 

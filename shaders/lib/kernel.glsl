@@ -8,7 +8,7 @@
 
 layout(local_size_x = 128) in;
 
-#include "passes/params.h"
+#include "lib/params.h"
 #ifdef VKMESH_BUILT_INS  // The benchmark's kernels, which are not exact.
 #include "../bench/built_ins.glsl"
 #else

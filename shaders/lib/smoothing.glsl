@@ -3,6 +3,7 @@
 #define VKMESH_SMOOTHING_GLSL
 
 #include "lib/kernel.glsl"
+#include "passes/laplacian_smoothing_params.h"
 
 VKMESH_PUSH_CONSTANTS(LaplacianSmoothingParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The centroid of each face and its area in units of the squared spatial width, in the order of the grid.
 #include "lib/kernel.glsl"
+#include "passes/bilateral_smoothing_params.h"
 
 VKMESH_PUSH_CONSTANTS(BilateralFacesParams);
 

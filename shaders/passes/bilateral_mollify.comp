@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Each vertex at the mean of the centroids around it, by area and a Gaussian of half the spatial width.
 #include "lib/bilateral.glsl"
+#include "passes/bilateral_smoothing_params.h"
 
 VKMESH_PUSH_CONSTANTS(BilateralSumParams);
 

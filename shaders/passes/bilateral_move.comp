@@ -3,6 +3,7 @@
 // Each vertex at the mean of its predictions by the tangent planes around it. Reads no other vertex, so that it may
 // write in place.
 #include "lib/bilateral.glsl"
+#include "passes/bilateral_smoothing_params.h"
 
 VKMESH_PUSH_CONSTANTS(BilateralSumParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The bounds of a block of points, or of a block of bounds.
 #include "lib/kernel.glsl"
+#include "passes/surface_measures_params.h"
 
 VKMESH_PUSH_CONSTANTS(BoundsBlocksParams);
 

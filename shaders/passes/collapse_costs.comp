@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // What collapsing each edge costs; the thread of the smaller half-edge writes both.
 #include "lib/quadrics.glsl"
+#include "passes/collapse_costs_params.h"
 
 VKMESH_PUSH_CONSTANTS(CollapseCostsParams);
 

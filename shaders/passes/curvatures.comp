@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Mean and Gaussian curvature at each vertex, from the ring of its neighbours.
 #include "lib/kernel.glsl"
+#include "passes/curvatures_params.h"
 
 VKMESH_PUSH_CONSTANTS(CurvaturesParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The signed angle between the normals of the two faces at each edge; the thread of the smaller half-edge writes both.
 #include "lib/kernel.glsl"
+#include "passes/dihedral_angles_params.h"
 
 VKMESH_PUSH_CONSTANTS(DihedralAnglesParams);
 

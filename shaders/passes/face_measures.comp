@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Area, moment and volume of a block of triangles, in coordinates relative to the bounds.
 #include "lib/kernel.glsl"
+#include "passes/surface_measures_params.h"
 
 VKMESH_PUSH_CONSTANTS(FaceMeasuresParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The planes around each vertex, in ascending order of faces.
 #include "lib/quadrics.glsl"
+#include "passes/collapse_costs_params.h"
 
 VKMESH_PUSH_CONSTANTS(QuadricsParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Scales the surface about its centroid to the volume it had. Twin of host/src/passes/restore_volume.cpp.
 #include "lib/kernel.glsl"
+#include "passes/restore_volume_params.h"
 
 VKMESH_PUSH_CONSTANTS(RestoreVolumeParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The sums of blocks of what face_measures.comp wrote.
 #include "lib/kernel.glsl"
+#include "passes/surface_measures_params.h"
 
 VKMESH_PUSH_CONSTANTS(SumBlocksParams);
 

@@ -3,6 +3,7 @@
 // What swapping each edge gains; the thread of the smaller half-edge writes both. Twin of
 // host/src/passes/swap_scores.cpp.
 #include "lib/kernel.glsl"
+#include "passes/swap_scores_params.h"
 
 VKMESH_PUSH_CONSTANTS(SwapScoresParams);
 

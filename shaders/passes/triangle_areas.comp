@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twice the area of each triangle, along its normal.
 #include "lib/kernel.glsl"
+#include "passes/triangle_normals_params.h"
 
 VKMESH_PUSH_CONSTANTS(TrianglesParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The unit normal of each triangle; the zero vector for one without area.
 #include "lib/kernel.glsl"
+#include "passes/triangle_normals_params.h"
 
 VKMESH_PUSH_CONSTANTS(TrianglesParams);
 

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The largest magnitude of the angles of the edges around each vertex.
 #include "lib/kernel.glsl"
+#include "passes/dihedral_angles_params.h"
 
 VKMESH_PUSH_CONSTANTS(VertexMaximaParams);
 

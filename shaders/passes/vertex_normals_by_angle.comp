@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Gathers the normals of the faces around each vertex, by their angles there, in ascending order of faces.
 #include "lib/kernel.glsl"
+#include "passes/vertex_normals_params.h"
 
 VKMESH_PUSH_CONSTANTS(VertexNormalsByAngleParams);
 

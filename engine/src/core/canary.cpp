@@ -10,8 +10,9 @@
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/math/arithmetic.h>
 
+#include "core/canary_params.h"
 #include "core/device.h"
-#include "core/shaders.h"
+#include "shaders.h"
 
 namespace vkmesh::detail {
 namespace {
@@ -90,7 +91,7 @@ std::string hexadecimal(float value) {
 Result<void> check_exactness(Context& context) {
   const std::vector<float> inputs = make_inputs();
   std::vector<float> results(kCases * VKMESH_CANARY_RESULTS);
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(context, canary_kernel()));
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(context, shaders::canary));
   VKMESH_TRY(Buffer input_buffer,
              Buffer::create(context, inputs.size() * sizeof(float), BufferMemory::kDevice, "canary inputs"));
   VKMESH_TRY(const Buffer result_buffer, Buffer::create(context, results.size() * sizeof(float),

@@ -207,12 +207,12 @@ Result<const Kernel*> Device::kernel(const KernelSource& source) {
   const auto found = kernels_.find(source.name);
   if (found != kernels_.end()) {
     const bool same = found->second.spirv == nullptr || found->second.spirv == source.spirv.data();
-    if (!same || found->second.kernel->push_constant_bytes_ != source.push_constant_bytes)
-      return fail(ErrorCode::kUsage, "two different kernels are named '" + source.name + "'");
+    if (!same)
+      return fail(ErrorCode::kUsage, "two different kernels are named '" + std::string(source.name) + "'");
     return found->second.kernel.get();
   }
   // The place in the map comes first, so that a made pipeline cannot be lost to an allocation that fails.
-  const auto [place, inserted] = kernels_.try_emplace(source.name);
+  const auto [place, inserted] = kernels_.try_emplace(std::string(source.name));
   auto made = make_kernel(
       source, {.round_to_nearest_even = rounds_to_nearest_even, .keep_signed_zeros = keeps_signed_zeros});
   if (!made) {
@@ -226,8 +226,8 @@ Result<const Kernel*> Device::kernel(const KernelSource& source) {
 Result<void> Device::replace_kernel(const KernelSource& source) {
   const std::lock_guard lock(kernels_mutex_);
   if (kernels_.contains(source.name))
-    return fail(ErrorCode::kUsage, "the kernel '" + source.name + "' was made already");
-  CachedKernel& place = kernels_[source.name];
+    return fail(ErrorCode::kUsage, "the kernel '" + std::string(source.name) + "' was made already");
+  CachedKernel& place = kernels_[std::string(source.name)];
   VKMESH_TRY(place.kernel, make_kernel(source, {}));
   return {};
 }
@@ -235,23 +235,18 @@ Result<void> Device::replace_kernel(const KernelSource& source) {
 Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source,
                                                     const FloatControls& controls) const {
   VKMESH_TRY(const SpirvKernel shader, inspect_spirv(source.spirv));
-  const std::string what = "making kernel '" + source.name + "'";
+  const std::string what = "making kernel '" + std::string(source.name) + "'";
   // A struct ends on a multiple of its alignment, which the shader's last member need not reach.
-  const auto padded = [](std::uint32_t bytes) { return (bytes + 7) / 8 * 8; };
-  if (padded(shader.push_constant_bytes) != padded(source.push_constant_bytes) ||
-      source.push_constant_bytes % 4 != 0)
-    return fail(ErrorCode::kUsage, what + ": the shader takes " + std::to_string(shader.push_constant_bytes) +
-                                       " bytes of push constants, not " +
-                                       std::to_string(source.push_constant_bytes));
-  if (source.push_constant_bytes < 8 || source.push_constant_bytes > max_push_constants)
-    return fail(ErrorCode::kUsage, what + ": " + std::to_string(source.push_constant_bytes) +
+  const std::uint32_t push_constant_bytes = (shader.push_constant_bytes + 7) / 8 * 8;
+  if (push_constant_bytes < 8 || push_constant_bytes > max_push_constants)
+    return fail(ErrorCode::kUsage, what + ": " + std::to_string(push_constant_bytes) +
                                        " bytes of push constants are outside [8, " +
                                        std::to_string(max_push_constants) + "]");
 
   const std::vector<std::uint32_t> spirv = with_float_controls(source.spirv, controls);
   auto kernel = std::make_unique<Kernel>();
   kernel->name_ = source.name;
-  kernel->push_constant_bytes_ = source.push_constant_bytes;
+  kernel->push_constant_bytes_ = push_constant_bytes;
   kernel->workgroup_size_ = shader.workgroup_size;
 
   VkShaderModuleCreateInfo module_info{};
@@ -261,7 +256,7 @@ Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source,
   VkShaderModule module = VK_NULL_HANDLE;
   VKMESH_VK(functions.vkCreateShaderModule(handle, &module_info, nullptr, &module), what);
 
-  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, source.push_constant_bytes};
+  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_constant_bytes};
   VkPipelineLayoutCreateInfo layout_info{};
   layout_info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
   layout_info.pushConstantRangeCount = 1;

@@ -125,7 +125,7 @@ class Device {
     const std::uint32_t* spirv = nullptr;  ///< Null: a replacement.
     std::unique_ptr<Kernel> kernel;
   };
-  std::map<std::string, CachedKernel> kernels_;
+  std::map<std::string, CachedKernel, std::less<>> kernels_;
   std::mutex draw_pipelines_mutex_;
   std::unique_ptr<DrawPipelines> draw_pipelines_;
 };

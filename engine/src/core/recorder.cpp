@@ -192,7 +192,7 @@ Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std:
                                       std::span<const Buffer* const> writes) {
   return detail::catching([&]() -> Result<void> {
     VKMESH_CHECK(state_->require_recording());
-    if (push_constants.size() != kernel.push_constant_bytes())
+    if ((push_constants.size() + 7) / 8 * 8 != kernel.push_constant_bytes())
       return fail(ErrorCode::kUsage,
                   "kernel '" + kernel.name() + "' takes " + std::to_string(kernel.push_constant_bytes()) +
                       " bytes of push constants, not " + std::to_string(push_constants.size()));

@@ -7,18 +7,10 @@
 
 #include "core/device.h"
 #include "draw/draw_params.h"
+#include "shaders.h"
 
 namespace vkmesh::detail {
 namespace {
-
-using std::uint32_t;
-#include "shaders/draw_corners_vert.spv.h"
-#include "shaders/draw_indexed_vert.spv.h"
-#include "shaders/draw_lines_frag.spv.h"
-#include "shaders/draw_lines_vert.spv.h"
-#include "shaders/draw_points_frag.spv.h"
-#include "shaders/draw_points_vert.spv.h"
-#include "shaders/draw_surface_frag.spv.h"
 
 struct ShaderPair {
   std::span<const std::uint32_t> vertex, fragment;
@@ -27,15 +19,15 @@ struct ShaderPair {
 ShaderPair shaders_of(DrawShaders which) {
   switch (which) {
     case DrawShaders::kIndexed:
-      return {k_draw_indexed_vert_spirv, k_draw_surface_frag_spirv};
+      return {shaders::draw_indexed_vert.spirv, shaders::draw_surface_frag.spirv};
     case DrawShaders::kCorners:
-      return {k_draw_corners_vert_spirv, k_draw_surface_frag_spirv};
+      return {shaders::draw_corners_vert.spirv, shaders::draw_surface_frag.spirv};
     case DrawShaders::kPoints:
-      return {k_draw_points_vert_spirv, k_draw_points_frag_spirv};
+      return {shaders::draw_points_vert.spirv, shaders::draw_points_frag.spirv};
     case DrawShaders::kLines:
       break;
   }
-  return {k_draw_lines_vert_spirv, k_draw_lines_frag_spirv};
+  return {shaders::draw_lines_vert.spirv, shaders::draw_lines_frag.spirv};
 }
 
 /// Shader modules, needed only until the pipelines are made.

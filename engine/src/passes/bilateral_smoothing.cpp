@@ -5,7 +5,8 @@
 #include <vkmesh/math/arithmetic.h>
 #include <vkmesh/passes/detail/bilateral_grid.h>
 
-#include "core/shaders.h"
+#include "passes/bilateral_smoothing_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 namespace {
@@ -93,10 +94,10 @@ Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh, co
   if (nearby.vertices_of_mesh_ != mesh.vertex_count() || nearby.faces_ != mesh.face_count())
     return fail(ErrorCode::kUsage, "the nearby faces are those of another mesh");
   if (nearby.faces_ == 0) return {};
-  VKMESH_TRY(const Kernel* faces, Kernel::get(recorder.context(), detail::bilateral_faces_kernel()));
-  VKMESH_TRY(const Kernel* mollify, Kernel::get(recorder.context(), detail::bilateral_mollify_kernel()));
-  VKMESH_TRY(const Kernel* normals, Kernel::get(recorder.context(), detail::bilateral_normals_kernel()));
-  VKMESH_TRY(const Kernel* move, Kernel::get(recorder.context(), detail::bilateral_move_kernel()));
+  VKMESH_TRY(const Kernel* faces, Kernel::get(recorder.context(), shaders::bilateral_faces));
+  VKMESH_TRY(const Kernel* mollify, Kernel::get(recorder.context(), shaders::bilateral_mollify));
+  VKMESH_TRY(const Kernel* normals, Kernel::get(recorder.context(), shaders::bilateral_normals));
+  VKMESH_TRY(const Kernel* move, Kernel::get(recorder.context(), shaders::bilateral_move));
 
   kernels::BilateralFacesParams of_faces{};
   of_faces.positions = mesh.positions().address();

@@ -1,7 +1,8 @@
 #include <vkmesh/engine/passes/collapse_costs.h>
 #include <vkmesh/passes/detail/raw_measures.h>
 
-#include "core/shaders.h"
+#include "passes/collapse_costs_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 
@@ -9,8 +10,8 @@ Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh, const C
   if (!mesh.passes().collapse_costs)
     return fail(ErrorCode::kUsage, "the mesh was not made for the pass collapse_costs");
   VKMESH_CHECK(detail::require_collapse_cost_options(options));
-  VKMESH_TRY(const Kernel* quadrics, Kernel::get(recorder.context(), detail::quadrics_kernel()));
-  VKMESH_TRY(const Kernel* costs, Kernel::get(recorder.context(), detail::collapse_costs_kernel()));
+  VKMESH_TRY(const Kernel* quadrics, Kernel::get(recorder.context(), shaders::quadrics));
+  VKMESH_TRY(const Kernel* costs, Kernel::get(recorder.context(), shaders::collapse_costs));
 
   kernels::QuadricsParams of_vertices{};
   of_vertices.positions = mesh.positions().address();

@@ -1,13 +1,14 @@
 #include <vkmesh/engine/passes/curvatures.h>
 
-#include "core/shaders.h"
+#include "passes/curvatures_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 
 Result<void> record_curvatures(Recorder& recorder, DeviceMesh& mesh) {
   if (!mesh.passes().curvatures)
     return fail(ErrorCode::kUsage, "the mesh was not made for the pass curvatures");
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), detail::curvatures_kernel()));
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), shaders::curvatures));
   kernels::CurvaturesParams params{};
   params.positions = mesh.positions().address();
   params.neighbour_offsets = mesh.neighbour_offsets().address();

@@ -1,5 +1,6 @@
 #include <vkmesh/engine/passes/dihedral_angles.h>
 
+#include "passes/dihedral_angles_params.h"
 #include "passes/face_vectors.h"
 
 namespace vkmesh {
@@ -7,11 +8,10 @@ namespace vkmesh {
 Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh) {
   if (!mesh.passes().dihedral_angles)
     return fail(ErrorCode::kUsage, "the mesh was not made for the pass dihedral_angles");
-  VKMESH_TRY(const Kernel* angles, Kernel::get(recorder.context(), detail::dihedral_angles_kernel()));
-  VKMESH_TRY(const Kernel* maxima, Kernel::get(recorder.context(), detail::vertex_maxima_kernel()));
+  VKMESH_TRY(const Kernel* angles, Kernel::get(recorder.context(), shaders::dihedral_angles));
+  VKMESH_TRY(const Kernel* maxima, Kernel::get(recorder.context(), shaders::vertex_maxima));
 
-  VKMESH_CHECK(
-      detail::record_face_vectors(recorder, mesh, detail::triangle_normals_kernel(), mesh.face_vectors()));
+  VKMESH_CHECK(detail::record_face_vectors(recorder, mesh, shaders::triangle_normals, mesh.face_vectors()));
 
   kernels::DihedralAnglesParams of_half_edges{};
   of_half_edges.positions = mesh.positions().address();

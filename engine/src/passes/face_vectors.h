@@ -4,7 +4,8 @@
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 
-#include "core/shaders.h"
+#include "passes/triangle_normals_params.h"
+#include "shaders.h"
 
 namespace vkmesh::detail {
 

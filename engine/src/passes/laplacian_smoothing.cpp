@@ -4,7 +4,8 @@
 #include <vkmesh/engine/passes/laplacian_smoothing.h>
 #include <vkmesh/passes/detail/smoothing_input.h>
 
-#include "core/shaders.h"
+#include "passes/laplacian_smoothing_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 
@@ -16,9 +17,8 @@ Result<void> record_laplacian_smoothing(Recorder& recorder, DeviceMesh& mesh,
   if (!options.locked.empty())
     return fail(ErrorCode::kUsage, "a device takes locked vertices by DeviceMesh::upload_locks()");
   const bool uniform = options.weights == SmoothingWeights::kUniform;
-  VKMESH_TRY(const Kernel* kernel,
-             Kernel::get(recorder.context(), uniform ? detail::laplacian_smoothing_kernel()
-                                                     : detail::cotangent_smoothing_kernel()));
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), uniform ? shaders::laplacian_smoothing
+                                                                           : shaders::cotangent_smoothing));
 
   kernels::LaplacianSmoothingParams params{};
   params.neighbour_offsets = mesh.neighbour_offsets().address();

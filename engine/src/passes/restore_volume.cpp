@@ -1,7 +1,8 @@
 #include <vkmesh/engine/passes/restore_volume.h>
 
-#include "core/shaders.h"
 #include "passes/raw_measures.h"
+#include "passes/restore_volume_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 namespace {
@@ -23,7 +24,7 @@ Result<void> record_volume(Recorder& recorder, DeviceMesh& mesh) {
 Result<void> record_restore_volume(Recorder& recorder, DeviceMesh& mesh) {
   VKMESH_CHECK(require_volume(mesh));
   VKMESH_CHECK(detail::record_raw_measures(recorder, mesh, mesh.surface_measures()));
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), detail::restore_volume_kernel()));
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), shaders::restore_volume));
   kernels::RestoreVolumeParams params{};
   params.positions = mesh.positions().address();
   params.before = mesh.volume_before().address();

@@ -3,8 +3,9 @@
 #include <vkmesh/engine/passes/surface_measures.h>
 #include <vkmesh/math/arithmetic_constants.h>
 
-#include "core/shaders.h"
 #include "passes/raw_measures.h"
+#include "passes/surface_measures_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 namespace {
@@ -14,7 +15,7 @@ std::uint32_t blocks_of(std::uint32_t elements) {
 }
 
 Result<void> record_bounds(Recorder& recorder, const DeviceMesh& mesh, const Buffer& measures) {
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), detail::bounds_blocks_kernel()));
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), shaders::bounds_blocks));
   const Buffer* source = &mesh.positions();
   const Buffer* target = &mesh.block_sums();
   const Buffer* next = &mesh.more_block_sums();
@@ -34,8 +35,8 @@ Result<void> record_bounds(Recorder& recorder, const DeviceMesh& mesh, const Buf
 }
 
 Result<void> record_sums(Recorder& recorder, const DeviceMesh& mesh, const Buffer& measures) {
-  VKMESH_TRY(const Kernel* per_face, Kernel::get(recorder.context(), detail::face_measures_kernel()));
-  VKMESH_TRY(const Kernel* sums, Kernel::get(recorder.context(), detail::sum_blocks_kernel()));
+  VKMESH_TRY(const Kernel* per_face, Kernel::get(recorder.context(), shaders::face_measures));
+  VKMESH_TRY(const Kernel* sums, Kernel::get(recorder.context(), shaders::sum_blocks));
   const Buffer* source = &mesh.block_sums();
   const Buffer* target = &mesh.more_block_sums();
   kernels::FaceMeasuresParams of_faces{};

@@ -1,13 +1,14 @@
 #include <vkmesh/engine/passes/swap_scores.h>
 
-#include "core/shaders.h"
+#include "passes/swap_scores_params.h"
+#include "shaders.h"
 
 namespace vkmesh {
 
 Result<void> record_swap_scores(Recorder& recorder, DeviceMesh& mesh, SwapCriterion criterion) {
   if (!mesh.passes().swap_scores)
     return fail(ErrorCode::kUsage, "the mesh was not made for the pass swap_scores");
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), detail::swap_scores_kernel()));
+  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), shaders::swap_scores));
   kernels::SwapScoresParams params{};
   params.positions = mesh.positions().address();
   params.corners = mesh.corners().address();

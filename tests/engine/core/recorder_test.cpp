@@ -15,7 +15,9 @@
 
 #include "core/device.h"
 #include "core/fake_loader.h"
-#include "core/shaders.h"
+#include "passes/dihedral_angles_params.h"
+#include "passes/triangle_normals_params.h"
+#include "shaders.h"
 #include "support/device.h"
 
 namespace vkmesh::test {
@@ -72,7 +74,7 @@ struct MaximaWork {
     return {0, 0, angles.address(), offsets.address(), half_edges.address(), maxima.address()};
   }
   void record(Recorder& recorder) const {
-    const Kernel* kernel = require(Kernel::get(recorder.context(), detail::vertex_maxima_kernel()));
+    const Kernel* kernel = require(Kernel::get(recorder.context(), shaders::vertex_maxima));
     require_done(recorder.dispatch(*kernel, params(), count, {&angles, &offsets, &half_edges}, {&maxima}));
   }
 };
@@ -187,7 +189,7 @@ TEST_CASE("kernels and copies are ordered alike") {
 
 TEST_CASE("a recorder refuses what it cannot do") {
   MaximaWork work(test_context(), 10);
-  const Kernel* kernel = require(Kernel::get(test_context(), detail::vertex_maxima_kernel()));
+  const Kernel* kernel = require(Kernel::get(test_context(), shaders::vertex_maxima));
   Recorder recorder = require(Recorder::create(test_context()));
   const kernels::TrianglesParams others{};
   const auto code = [](const Result<void>& result) { return result ? ErrorCode{} : result.error().code; };

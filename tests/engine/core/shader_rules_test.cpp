@@ -12,8 +12,8 @@
 #include <catch2/catch.hpp>
 #include <unistd.h>
 
-#include "core/shaders.h"
 #include "core/spirv.h"
+#include "shaders.h"
 
 namespace vkmesh::test {
 namespace {
@@ -77,13 +77,13 @@ std::vector<std::uint32_t> copy_of(std::span<const std::uint32_t> module) {
 }  // namespace
 
 TEST_CASE("shaders keep the rules of exact arithmetic", "[no-device]") {
-  CHECK(detail::embedded_kernels().size() >= 13);
-  for (const KernelSource& source : detail::embedded_kernels())
+  CHECK(shaders::kernels().size() >= 13);
+  for (const KernelSource& source : shaders::kernels())
     for (const std::string& breach : breaches(source.spirv)) FAIL_CHECK(source.name << ": " << breach);
 }
 
 TEST_CASE("a breach of the rules is seen", "[no-device]") {
-  const auto original = detail::canary_kernel().spirv;
+  const auto original = shaders::canary.spirv;
   REQUIRE(breaches(original).empty());
   const auto instructions = detail::spirv_instructions(original);
   REQUIRE(instructions);
@@ -127,7 +127,7 @@ TEST_CASE("shaders are valid SPIR-V, as compiled and with float controls", "[no-
     const std::string command = "spirv-val --target-env vulkan1.2 '" + file.string() + "' > /dev/null 2>&1";
     return std::system(command.c_str()) == 0;
   };
-  for (const KernelSource& source : detail::embedded_kernels()) {
+  for (const KernelSource& source : shaders::kernels()) {
     INFO(source.name);
     CHECK(is_valid(source.spirv));
     for (const detail::FloatControls& controls :
@@ -140,7 +140,7 @@ TEST_CASE("shaders are valid SPIR-V, as compiled and with float controls", "[no-
       CHECK(is_valid(patched));
     }
   }
-  std::vector<std::uint32_t> broken = copy_of(detail::canary_kernel().spirv);
+  std::vector<std::uint32_t> broken = copy_of(shaders::canary.spirv);
   broken.back() = 0;
   CHECK(!is_valid(broken));
   std::filesystem::remove(file);

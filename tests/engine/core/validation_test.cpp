@@ -11,7 +11,8 @@
 #include <vkmesh/engine/draw/draw.h>
 
 #include "core/device.h"
-#include "core/shaders.h"
+#include "passes/triangle_normals_params.h"
+#include "shaders.h"
 #include "support/device.h"
 #include "support/shapes.h"
 
@@ -73,7 +74,7 @@ TEST_CASE("GPU-assisted validation sees reads past the end of a buffer, of kerne
   const DrawMesh on_device = require(DrawMesh::create(*context, mesh));
   DrawGeometry geometry = on_device.geometry();
   const Buffer vectors = require(Buffer::create(*context, 12 * (geometry.triangles + 1)));
-  const Kernel* kernel = require(Kernel::get(*context, detail::triangle_areas_kernel()));
+  const Kernel* kernel = require(Kernel::get(*context, shaders::triangle_areas));
   kernels::TrianglesParams params{};
   params.positions = geometry.positions->address();
   params.corners = geometry.corners->address();

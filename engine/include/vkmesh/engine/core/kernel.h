@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <vulkan/vulkan_core.h>
 
@@ -16,9 +17,8 @@ namespace vkmesh {
 /// `count`, then what it likes, buffer addresses above all. It runs a thread for each element in [first,
 /// first + count), in workgroups of one dimension.
 struct KernelSource {
-  std::string name;
-  std::span<const std::uint32_t> spirv;   ///< Must stay where it is while the context lives.
-  std::uint32_t push_constant_bytes = 0;  ///< sizeof the struct that C++ fills; checked against the shader's.
+  std::string_view name;
+  std::span<const std::uint32_t> spirv;  ///< Must stay where it is while the context lives.
 };
 
 /// A compute pipeline. Made once for a context, which keeps it.
@@ -27,13 +27,13 @@ class Kernel {
   /// The kernel of that name, made at the first call. May be called from several threads.
   /// Where the device offers it, the SPIR-V is made to ask for rounding to nearest even and for signed zeros,
   /// infinities and NaNs to be kept (VK_KHR_shader_float_controls, core in Vulkan 1.2).
-  /// Errors: kUsage for SPIR-V that is no such shader, or whose push constants are of another size;
-  /// kOutOfMemory.
+  /// Errors: kUsage for SPIR-V that is no such shader; kOutOfMemory.
   [[nodiscard]] static Result<const Kernel*> get(Context& context, const KernelSource& source);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] VkPipeline pipeline() const { return pipeline_; }
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
+  /// A multiple of 8: the size of the shader's struct, and of the one that C++ fills.
   [[nodiscard]] std::uint32_t push_constant_bytes() const { return push_constant_bytes_; }
   [[nodiscard]] std::uint32_t workgroup_size() const { return workgroup_size_; }
 
