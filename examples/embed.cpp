@@ -17,12 +17,12 @@ Result<std::vector<Vec3>> normals_of(const char* path, const ContextOptions& opt
   VKMESH_TRY(IndexedFaceSet mesh, to_indexed_face_set(std::move(file)));
   VKMESH_TRY(Consolidated made, consolidate(std::move(mesh)));
   VKMESH_TRY(auto context, Context::create(options));
-  VKMESH_TRY(auto device,
-             DeviceMesh::create(*context, made.mesh, made.face_set.points, {.vertex_normals = true}));
+  VKMESH_TRY(auto device, DeviceMesh::create(*context, made.mesh, made.face_set.points));
+  DeviceVertexNormals result;
   VKMESH_TRY(auto recorder, Recorder::create(*context));
-  VKMESH_CHECK(record_vertex_normals(recorder, device));
+  VKMESH_CHECK(record_vertex_normals(recorder, device, result));
   VKMESH_CHECK(recorder.submit_and_wait());
-  return device.download_vertex_normals();
+  return result.normals.download();
 }
 // [readme]
 

@@ -56,25 +56,29 @@ Result<void> run(const std::filesystem::path& in, const std::filesystem::path& o
   VKMESH_TRY(const auto context, Context::create(options));
   const std::string& name = context->info().name;
   row("open", "the device", lap(from), name);
-  VKMESH_TRY(DeviceMesh on_device, DeviceMesh::create(*context, c.mesh, mesh.points, {true, true, true}));
-  row("upload", grouped(context->allocated_bytes() >> 20, "MiB on the device"), lap(from), name);
+  VKMESH_TRY(DeviceMesh on_device, DeviceMesh::create(*context, c.mesh, mesh.points));
+  DeviceSmoothing smoothing;
+  DeviceVertexNormals device_normals;
+  DeviceDihedralAngles device_angles;
 
   VKMESH_TRY(Recorder recorder, Recorder::create(*context));
   recorder.begin_section("smooth");
-  VKMESH_CHECK(record_laplacian_smoothing(recorder, on_device, {.lambda = 0.5f, .iterations = 10}));
+  VKMESH_CHECK(
+      record_laplacian_smoothing(recorder, on_device, smoothing, {.lambda = 0.5f, .iterations = 10}));
   recorder.begin_section("normals");
-  VKMESH_CHECK(record_vertex_normals(recorder, on_device));
+  VKMESH_CHECK(record_vertex_normals(recorder, on_device, device_normals));
   recorder.begin_section("curvature");
-  VKMESH_CHECK(record_dihedral_angles(recorder, on_device));
+  VKMESH_CHECK(record_dihedral_angles(recorder, on_device, device_angles));
+  row("upload", grouped(context->allocated_bytes() >> 20, "MiB on the device"), lap(from), name);
   VKMESH_CHECK(recorder.submit_and_wait());
   for (const SectionTime& section : recorder.section_times())
     row(section.name.c_str(), points + (section.name == "smooth" ? ", 10 steps" : ""), section.milliseconds,
         name);
 
   lap(from);
-  VKMESH_TRY(mesh.points, on_device.download_positions());
-  VKMESH_TRY(const std::vector<Vec3> normals, on_device.download_vertex_normals());
-  VKMESH_TRY(const std::vector<float> angles, on_device.download_vertex_maxima());
+  VKMESH_TRY(mesh.points, on_device.positions().download());
+  VKMESH_TRY(const std::vector<Vec3> normals, device_normals.normals.download());
+  VKMESH_TRY(const std::vector<float> angles, device_angles.vertex_maximum.download());
   row("download", "positions, normals, angles", lap(from), name);
 
   DecimateOptions decimation;

@@ -32,10 +32,10 @@ Result<void> run(Job& job, CreaseOptions options, const Degrees& degrees) {
   options.sharp_angle = degrees.sharp / kDegrees;
   options.soft_angle = degrees.soft / kDegrees;
   VKMESH_CHECK(check_output(job.options().output));
-  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
+  VKMESH_TRY(Backend backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
-  VKMESH_TRY(const DihedralAngles angles, backend->dihedral_angles(half_edges, mesh.points));
+  VKMESH_TRY(const DihedralAngles angles, backend.run(dihedral_angles_pass(), {half_edges, mesh.points}));
   VKMESH_TRY(const std::vector<Crease> creases, job.timed("trace", [&] {
     return find_creases(half_edges, mesh.points, angles.half_edge, options);
   }));

@@ -19,10 +19,11 @@ struct CurvatureOptions {
 Result<std::vector<float>> values_of(Backend& backend, const std::string& kind, const HalfEdgeMesh& mesh,
                                      std::span<const Vec3> positions) {
   if (kind == "dihedral") {
-    VKMESH_TRY(DihedralAngles angles, backend.dihedral_angles(mesh, positions));
+    VKMESH_TRY(DihedralAngles angles, backend.run(dihedral_angles_pass(), {mesh, positions}));
     return std::move(angles.vertex_maximum);
   }
-  VKMESH_TRY(const std::vector<VertexCurvature> curvatures, backend.curvatures(mesh, positions));
+  VKMESH_TRY(const std::vector<VertexCurvature> curvatures,
+             backend.run(curvatures_pass(), {mesh, positions}));
   std::vector<float> values(curvatures.size());
   for (std::size_t v = 0; v < values.size(); ++v)
     values[v] = kind == "mean" ? curvatures[v].mean : curvatures[v].gaussian;
@@ -31,10 +32,10 @@ Result<std::vector<float>> values_of(Backend& backend, const std::string& kind, 
 
 Result<void> run(Job& job, const CurvatureOptions& options) {
   VKMESH_CHECK(job.check_output());
-  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
+  VKMESH_TRY(Backend backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
-  VKMESH_TRY(std::vector<float> values, values_of(*backend, options.kind, half_edges, mesh.points));
+  VKMESH_TRY(std::vector<float> values, values_of(backend, options.kind, half_edges, mesh.points));
 
   double sum = 0, smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (const float value : values) {

@@ -3,9 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,107 +25,15 @@ struct Line {
   std::string digest, pass, file;
 };
 
-/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): xor with each byte, times the prime of 64 bits; in hexadecimal.
-template <class T>
-std::string digest_of(const std::vector<T>& values) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const std::byte byte : std::as_bytes(std::span(values)))
-    hash = (hash ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 struct Input {
   HalfEdgeMesh mesh;
   std::vector<Vec3> positions;
 };
 
-struct Pass {
-  std::string name;
-  std::function<Result<std::string>(Backend&, const Input&)> digest;
-};
-
-template <class Compute>
-Pass pass(std::string name, Compute compute) {
-  return {std::move(name), [compute](Backend& backend, const Input& input) -> Result<std::string> {
-            VKMESH_TRY(const auto values, compute(backend, input));
-            return digest_of(values);
-          }};
-}
-
-Pass normals(std::string name, NormalWeights weights) {
-  return pass(std::move(name), [weights](Backend& b, const Input& in) {
-    return b.vertex_normals(in.mesh, in.positions, {weights});
-  });
-}
-
-Pass smoothing(std::string name, LaplacianSmoothingOptions options) {
-  return pass(std::move(name), [options](Backend& b, const Input& in) {
-    return b.laplacian_smoothing(in.mesh, in.positions, options, false);
-  });
-}
-
-Pass collapse_costs(std::string name, CollapsePlacement placement) {
-  return pass(std::move(name), [placement](Backend& b, const Input& in) {
-    CollapseCostOptions options = unit_frame(in.positions);
-    options.placement = placement;
-    return b.collapse_costs(in.mesh, in.positions, options);
-  });
-}
-
-Pass swap_scores(std::string name, SwapCriterion criterion) {
-  return pass(std::move(name), [criterion](Backend& b, const Input& in) {
-    return b.swap_scores(in.mesh, in.positions, criterion);
-  });
-}
-
-const std::vector<Pass>& passes() {
-  static const std::vector<Pass> all = {
-      normals("vertex-normals", NormalWeights::kArea),
-      normals("vertex-normals-by-angle", NormalWeights::kAngle),
-      normals("vertex-normals-uniform", NormalWeights::kUniform),
-      pass("triangle-normals",
-           [](Backend& b, const Input& in) { return b.triangle_normals(in.mesh, in.positions); }),
-      pass("dihedral-angles",
-           [](Backend& b, const Input& in) -> Result<std::vector<float>> {
-             VKMESH_TRY(DihedralAngles angles, b.dihedral_angles(in.mesh, in.positions));
-             // Of half-edges, then of vertices.
-             angles.half_edge.insert(angles.half_edge.end(), angles.vertex_maximum.begin(),
-                                     angles.vertex_maximum.end());
-             return std::move(angles.half_edge);
-           }),
-      pass("curvatures", [](Backend& b, const Input& in) { return b.curvatures(in.mesh, in.positions); }),
-      pass("surface-measures",
-           [](Backend& b, const Input& in) -> Result<std::vector<SurfaceMeasures>> {
-             VKMESH_TRY(const SurfaceMeasures measures, b.surface_measures(in.mesh, in.positions));
-             return std::vector{measures};
-           }),
-      collapse_costs("collapse-costs", CollapsePlacement::kOptimal),
-      collapse_costs("collapse-costs-end", CollapsePlacement::kEndpoint),
-      swap_scores("swap-scores", SwapCriterion::kMinAngle),
-      swap_scores("swap-scores-by-quality", SwapCriterion::kAspectRatio),
-      smoothing("laplacian-smoothing", {}),
-      smoothing("taubin-smoothing", {.mu = -0.53f}),
-      smoothing("cotangent-smoothing", {.weights = SmoothingWeights::kCotangent}),
-      smoothing("cotangent-taubin-along-boundary", {.boundary = SmoothingBoundary::kAlongItself,
-                                                    .weights = SmoothingWeights::kCotangent,
-                                                    .mu = -0.53f}),
-      pass("laplacian-smoothing-keeping-volume",
-           [](Backend& b, const Input& in) {
-             return b.laplacian_smoothing(in.mesh, in.positions, {.iterations = 3},
-                                          in.mesh.boundary_half_edge_count() == 0);
-           }),
-      pass("bilateral-smoothing",
-           [](Backend& b, const Input& in) {
-             const double length = mean_edge_length(in.mesh, in.positions);
-             return b.bilateral_smoothing(
-                 in.mesh, in.positions,
-                 {.spatial = static_cast<float>(length), .influence = static_cast<float>(0.3 * length)},
-                 false);
-           }),
-  };
-  return all;
+std::string hexadecimal(std::uint64_t digest) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest));
+  return text;
 }
 
 Result<Input> read_triangles(Job& job, const std::string& file) {
@@ -143,15 +49,17 @@ Result<Input> read_triangles(Job& job, const std::string& file) {
 }
 
 Result<std::vector<Line>> digests_of(Job& job, Backend& backend, const std::string& file) {
-  VKMESH_TRY(const Input input, read_triangles(job, file));
+  VKMESH_TRY(const Input read, read_triangles(job, file));
+  const PassInput input(read.mesh, read.positions);
   std::vector<Line> lines;
-  for (const Pass& pass : passes()) {
-    auto digest = pass.digest(backend, input);
-    if (!digest) {
-      if (digest.error().where.file.empty()) digest.error().where.file = file;
-      return tl::unexpected<Error>(digest.error());
+  for (const PassRow& row : pass_table()) {
+    if (row.name.empty()) continue;
+    auto output = backend.run(row.pass(input), input);
+    if (!output) {
+      if (output.error().where.file.empty()) output.error().where.file = file;
+      return tl::unexpected<Error>(output.error());
     }
-    lines.push_back({*std::move(digest), pass.name, file});
+    lines.push_back({hexadecimal(row.digest(*output)), row.name, file});
   }
   return lines;
 }
@@ -185,11 +93,11 @@ Result<void> run(Job& job, const DigestOptions& options) {
     for (const Line& line : expected)
       if (std::find(files.begin(), files.end(), line.file) == files.end()) files.push_back(line.file);
   }
-  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
+  VKMESH_TRY(Backend backend, open_backend(job));
   Json& list = job.json()["result"]["digests"] = Json::array();
   std::vector<Line> lines;
   for (const std::string& file : files) {
-    VKMESH_TRY(std::vector<Line> some, digests_of(job, *backend, file));
+    VKMESH_TRY(std::vector<Line> some, digests_of(job, backend, file));
     std::move(some.begin(), some.end(), std::back_inserter(lines));
   }
   std::size_t width = 0;

@@ -11,10 +11,11 @@ namespace {
 
 Result<void> run(Job& job, const VertexNormalsOptions& options) {
   VKMESH_CHECK(job.check_output());
-  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
+  VKMESH_TRY(Backend backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
-  VKMESH_TRY(const std::vector<Vec3> normals, backend->vertex_normals(half_edges, mesh.points, options));
+  VKMESH_TRY(const std::vector<Vec3> normals,
+             backend.run(vertex_normals_pass(options), {half_edges, mesh.points}));
 
   std::size_t undefined = 0;
   std::vector<float> values;

@@ -44,7 +44,7 @@ Result<Smoothed> by_steps(Job& job, Backend& backend, const HalfEdgeMesh& mesh, 
                           {"weights", steps.weights == SmoothingWeights::kUniform ? "uniform" : "cotangent"},
                           {"boundary", options.boundary}};
   VKMESH_TRY(std::vector<Vec3> smoothed,
-             backend.laplacian_smoothing(mesh, points, steps, options.keep_volume));
+             backend.run(laplacian_smoothing_pass(steps, options.keep_volume), {mesh, points}));
   return Smoothed{std::move(smoothed),
                   count_of(steps.iterations, "step") + " with lambda " +
                       brief(static_cast<double>(steps.lambda)) +
@@ -62,18 +62,18 @@ Result<Smoothed> by_predictions(Job& job, Backend& backend, const HalfEdgeMesh& 
                           {"mean_edge_length", edge}};
   if (mesh.face_count() == 0) return Smoothed{{points.begin(), points.end()}, "nothing: there are no faces"};
   VKMESH_TRY(std::vector<Vec3> smoothed,
-             backend.bilateral_smoothing(mesh, points, widths, options.keep_volume));
+             backend.run(bilateral_smoothing_pass(widths, options.keep_volume), {mesh, points}));
   return Smoothed{std::move(smoothed), "within " + brief(options.spatial) + ", across " +
                                            brief(options.influence) + " mean edge lengths of " + brief(edge)};
 }
 
 Result<void> run(Job& job, const SmoothOptions& options) {
   VKMESH_CHECK(job.check_output());
-  VKMESH_TRY(const std::unique_ptr<Backend> backend, open_backend(job));
+  VKMESH_TRY(Backend backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   const auto smooth = options.method == "bilateral" ? by_predictions : by_steps;
-  VKMESH_TRY(Smoothed smoothed, smooth(job, *backend, half_edges, mesh.points, options));
+  VKMESH_TRY(Smoothed smoothed, smooth(job, backend, half_edges, mesh.points, options));
 
   double sum = 0, largest = 0;
   for (std::size_t i = 0; i < smoothed.points.size(); ++i) {

@@ -1,70 +1,65 @@
 // Where the compute passes of a subcommand run: their CPU references, or a Vulkan device.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
-#include <span>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <vkmesh/base/result.h>
-#include <vkmesh/math/vec.h>
-#include <vkmesh/mesh/half_edge_mesh.h>
-#include <vkmesh/passes/bilateral_smoothing.h>
-#include <vkmesh/passes/collapse_costs.h>
-#include <vkmesh/passes/curvatures.h>
-#include <vkmesh/passes/dihedral_angles.h>
-#include <vkmesh/passes/laplacian_smoothing.h>
-#include <vkmesh/passes/surface_measures.h>
-#include <vkmesh/passes/swap_scores.h>
-#include <vkmesh/passes/triangle_normals.h>
-#include <vkmesh/passes/vertex_normals.h>
+#ifdef VKMESH_HAS_VULKAN
+#include <vkmesh/engine/core/context.h>
+#endif
 
 #include "job/common.h"
-
-namespace vkmesh {
-class Context;
-struct ContextOptions;
-}  // namespace vkmesh
+#include "passes/pass_table.h"
 
 namespace vkmesh::cli {
 
-/// The passes, as the functions of the same names in vkmesh/passes/. All backends give the same bits, and
-/// book their times in the job they were opened for.
+/// The host, or a device. Passes give the same bits on all, and book their times in the job that this was
+/// opened for.
 class Backend {
  public:
-  Backend() = default;
-  virtual ~Backend() = default;
-  Backend(const Backend&) = delete;
-  Backend& operator=(const Backend&) = delete;
+  explicit Backend(Job& job) : job_(job) {}
+#ifdef VKMESH_HAS_VULKAN
+  Backend(Job& job, std::unique_ptr<Context> context) : job_(job), context_(std::move(context)) {}
+#endif
 
-  [[nodiscard]] virtual Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
-                                                                 std::span<const Vec3> positions,
-                                                                 const VertexNormalsOptions& options) = 0;
-  [[nodiscard]] virtual Result<std::vector<Vec3>> triangle_normals(const HalfEdgeMesh& mesh,
-                                                                   std::span<const Vec3> positions) = 0;
-  [[nodiscard]] virtual Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh,
-                                                               std::span<const Vec3> positions) = 0;
-  [[nodiscard]] virtual Result<std::vector<VertexCurvature>> curvatures(const HalfEdgeMesh& mesh,
-                                                                        std::span<const Vec3> positions) = 0;
-  [[nodiscard]] virtual Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
-                                                                 std::span<const Vec3> positions) = 0;
-  /// With keep_volume restore_volume() follows.
-  [[nodiscard]] virtual Result<std::vector<Vec3>> laplacian_smoothing(
-      const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const LaplacianSmoothingOptions& options,
-      bool keep_volume) = 0;
-  [[nodiscard]] virtual Result<std::vector<Vec3>> bilateral_smoothing(
-      const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const BilateralSmoothingOptions& options,
-      bool keep_volume) = 0;
-  [[nodiscard]] virtual Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh,
-                                                                  std::span<const Vec3> positions,
-                                                                  const CollapseCostOptions& options) = 0;
-  [[nodiscard]] virtual Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh,
-                                                               std::span<const Vec3> positions,
-                                                               SwapCriterion criterion) = 0;
+  template <class Output>
+  [[nodiscard]] Result<Output> run(const Pass<Output>& pass, const PassInput& input) {
+#ifdef VKMESH_HAS_VULKAN
+    if (context_) {
+      VKMESH_TRY(DeviceMesh mesh, job_.timed("upload", [&] {
+        return DeviceMesh::create(*context_, input.mesh, input.positions);
+      }));
+      VKMESH_TRY(const DevicePass<Output> ready,
+                 job_.timed("upload", [&] { return pass.device(*context_, mesh, input); }));
+      VKMESH_CHECK(run_steps(ready.steps, ready.record));
+      return job_.timed("download", ready.download);
+    }
+#endif
+    Output output{};
+    VKMESH_CHECK(job_.timed("compute", [&] { return pass.host(input, job_.progress("smoothing"), output); }));
+    return output;
+  }
+
+ private:
+#ifdef VKMESH_HAS_VULKAN
+  /// Runs the steps in portions of a fraction of a second, so that progress shows and an interrupt is heard.
+  [[nodiscard]] Result<void> run_steps(
+      std::uint32_t steps,
+      const std::function<Result<void>(Recorder&, std::uint32_t, std::uint32_t)>& record);
+#endif
+
+  Job& job_;
+#ifdef VKMESH_HAS_VULKAN
+  std::unique_ptr<Context> context_;
+#endif
 };
 
 /// The backend that --device asks for, reported in the job. Errors: kNoDevice, kOutOfMemory.
-[[nodiscard]] Result<std::unique_ptr<Backend>> open_backend(Job& job);
+[[nodiscard]] Result<Backend> open_backend(Job& job);
 
 /// For subcommands that run on the host alone: reports that, and says so when another device was asked for.
 void use_host(Job& job);
@@ -78,8 +73,9 @@ void use_host(Job& job);
 /// kOutOfMemory.
 [[nodiscard]] Result<std::unique_ptr<Context>> open_context(Job& job, const std::string& device);
 
-/// A backend on a Vulkan device, chosen as ContextOptions::device is. Errors: kNoDevice, kOutOfMemory.
-[[nodiscard]] Result<std::unique_ptr<Backend>> open_vulkan_backend(Job& job, const std::string& device);
+/// Runs what `record` records. Returns the device's time in milliseconds, by its own clock where it has one.
+[[nodiscard]] Result<double> run_recorded(Context& context,
+                                          const std::function<Result<void>(Recorder&)>& record);
 #endif
 
 }  // namespace vkmesh::cli

@@ -8,10 +8,12 @@
 #ifdef __cplusplus
 #include <cstdint>
 
+#include <vkmesh/engine/core/device_array.h>
+
 namespace vkmesh::kernels {
 using uint = std::uint32_t;
-using Floats = std::uint64_t;
-using Uints = std::uint64_t;
+using Floats = DeviceAddress<float>;
+using Uints = DeviceAddress<std::uint32_t>;
 }  // namespace vkmesh::kernels
 #define VKMESH_PARAMS(Name)   \
   namespace vkmesh::kernels { \

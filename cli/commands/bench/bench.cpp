@@ -2,6 +2,7 @@
 #include "commands/bench/bench.h"
 
 #include <algorithm>
+#include <any>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -15,41 +16,11 @@
 
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/mesh/triangulate.h>
-#include <vkmesh/passes/bilateral_smoothing.h>
-#include <vkmesh/passes/collapse_costs.h>
-#include <vkmesh/passes/curvatures.h>
-#include <vkmesh/passes/dihedral_angles.h>
-#include <vkmesh/passes/laplacian_smoothing.h>
-#include <vkmesh/passes/surface_measures.h>
-#include <vkmesh/passes/swap_scores.h>
-#include <vkmesh/passes/triangle_normals.h>
-#include <vkmesh/passes/vertex_normals.h>
 
 #include "commands.h"
 #include "passes/backend.h"
 
 namespace vkmesh::cli {
-
-BenchBytes::BenchBytes(const BenchSubject& subject) {
-  const std::uint64_t v = subject.mesh.vertex_count(), f = subject.mesh.face_count(),
-                      directed = subject.neighbours.ids.size();
-  const std::uint64_t points = 12 * v, per_half_edge = 12 * f, lists = 4 * v + 4 * directed;
-  triangle_normals = points + per_half_edge + 12 * f;
-  vertex_normals = points + per_half_edge + points;
-  dihedral_angles = points + 2 * per_half_edge + per_half_edge + 4 * v;
-  curvatures = points + lists + 16 * v;
-  smoothing_step = points + lists + points;
-  measures = points + per_half_edge;
-  bilateral_smoothing = points + per_half_edge + points;
-  collapse_costs = points + 2 * per_half_edge + 24 * v + per_half_edge;
-  swap_scores = points + 2 * per_half_edge + per_half_edge;
-  decimation = points + per_half_edge + (points + per_half_edge) / 10;
-}
-
-BilateralWidth bench_widths(const BenchSubject& subject) {
-  const double edge = mean_edge_length(subject.mesh, subject.positions);
-  return {static_cast<float>(4 * edge), static_cast<float>(edge)};
-}
 
 namespace {
 
@@ -72,70 +43,12 @@ Result<double> timed(Work&& work) {
 /// The CPU path, with all cores.
 class HostBench : public BenchPlace {
  public:
-  Result<void> for_each_pass(const BenchSubject& s, const std::string& only,
-                             const std::function<Result<void>(const BenchPass&)>& use) override {
-    const BenchBytes bytes(s);
-    // Into memory that is there already, as an engine has it: the passes are timed and not the system's
-    // pages.
-    std::vector<Vec3> at_vertices(s.mesh.vertex_count()), at_faces(s.mesh.face_count());
-    const auto normals = [&](NormalWeights weights) {
-      return [&s, &at_vertices, weights] {
-        return timed([&] { return vertex_normals(s.mesh, s.positions, at_vertices, {weights}); });
-      };
-    };
-    const auto steps = [&s](LaplacianSmoothingOptions options) {
-      return [&s, options]() -> Result<double> {
-        VKMESH_TRY(const double all,
-                   timed([&] { return laplacian_smoothing(s.neighbours, s.positions, options); }));
-        return all / kBenchSteps;
-      };
-    };
-    const BilateralWidth width = bench_widths(s);
-    const CollapseCostOptions frame = unit_frame(s.positions);
-    std::vector<BenchPass> passes = {
-        {"triangle normals", bytes.triangle_normals,
-         [&] { return timed([&] { return triangle_normals(s.mesh, s.positions, at_faces); }); }},
-        {"vertex normals", bytes.vertex_normals, normals(NormalWeights::kArea)},
-        {"vertex normals by angle", bytes.vertex_normals, normals(NormalWeights::kAngle)},
-        {"dihedral angles", bytes.dihedral_angles,
-         [&s] { return timed([&] { return dihedral_angles(s.mesh, s.positions); }); }},
-        {"curvatures", bytes.curvatures,
-         [&s] { return timed([&] { return curvatures(s.neighbours, s.positions); }); }},
-        {"Laplacian step", bytes.smoothing_step, steps({.iterations = kBenchSteps})},
-        {"cotangent step", bytes.smoothing_step,
-         steps({.iterations = kBenchSteps, .weights = SmoothingWeights::kCotangent})},
-        {"area and volume", bytes.measures,
-         [&s] { return timed([&] { return surface_measures(s.mesh, s.positions); }); }},
-        {"quadrics and collapse costs", bytes.collapse_costs,
-         [&s, frame] {
-           return timed([&]() -> Result<std::vector<float>> {
-             VKMESH_TRY(const std::vector<VertexQuadric> planes, quadrics(s.mesh, s.positions, frame));
-             return collapse_costs(s.mesh, s.positions, planes, frame);
-           });
-         }},
-        {"swap scores", bytes.swap_scores,
-         [&s] { return timed([&] { return swap_scores(s.mesh, s.positions); }); }},
-        {"bilateral smoothing", bytes.bilateral_smoothing,
-         [&s, width] {
-           return timed([&] {
-             return bilateral_smoothing(s.mesh, s.positions, {width.spatial, width.influence});
-           });
-         }},
-    };
-    // All cores. Removed is nine tenths of the vertices, so the time of a triangle tells that of a removal.
-    for (const auto& [name, operation] :
-         {std::pair("decimation by edge collapses", DecimateOperation::kEdgeCollapse),
-          std::pair("decimation by half-edge collapses", DecimateOperation::kHalfEdgeCollapse),
-          std::pair("decimation by vertex removals", DecimateOperation::kVertexRemoval)})
-      passes.push_back({name, bytes.decimation, [&s, operation = operation] {
-                          DecimateOptions options;
-                          options.operation = operation;
-                          options.target_ratio = kBenchRatio;
-                          return timed([&] { return decimate({s.positions, s.mesh.origins()}, options); });
-                        }});
-    for (const BenchPass& pass : passes)
-      if (pass.name.find(only) != std::string::npos) VKMESH_CHECK(use(pass));
-    return {};
+  Result<Run> prepare(const PassRow& row, const PassInput& input) override {
+    // Results go into memory that is there already, as an engine has it: the passes are timed and not the
+    // system's pages.
+    return Run([pass = row.pass(input), &input, output = std::any()]() mutable {
+      return timed([&] { return pass.host(input, {}, output); });
+    });
   }
 
   Result<double> copy(std::uint64_t bytes) override {
@@ -157,15 +70,22 @@ class HostBench : public BenchPlace {
     });
   }
 
+  [[nodiscard]] bool decimates() const override { return true; }
+
  private:
   std::vector<std::byte> from_, to_;
   std::size_t place_ = 0;
 };
 
+/// A mesh of one size.
+struct BenchSubject {
+  HalfEdgeMesh mesh;
+  std::vector<Vec3> positions;
+};
+
 Result<BenchSubject> subject_of(const IndexedFaceSet& triangles) {
   BenchSubject subject;
   VKMESH_TRY(subject.mesh, to_half_edge_mesh(triangles));
-  VKMESH_TRY(subject.neighbours, node_neighbours(subject.mesh));
   subject.positions = triangles.points;
   return subject;
 }
@@ -208,15 +128,16 @@ struct Measured {
   double copy = 0;
 };
 
-Result<Measured> measure(Job& job, BenchPlace& place, const BenchPass& pass, std::size_t repetitions) {
+Result<Measured> measure(Job& job, BenchPlace& place, const std::string& title, std::uint64_t bytes,
+                         const BenchPlace::Run& run, std::size_t repetitions) {
   Measured measured;
   std::vector<double> copies;
   // One to warm up; then in turns, so that what disturbs the machine disturbs both.
   for (std::size_t i = 0; i <= repetitions; ++i) {
-    if (!job.progress(pass.name)(static_cast<double>(i) / static_cast<double>(repetitions + 1)))
+    if (!job.progress(title)(static_cast<double>(i) / static_cast<double>(repetitions + 1)))
       return fail(ErrorCode::kInterrupted, "interrupted");
-    VKMESH_TRY(const double milliseconds, pass.run());
-    VKMESH_TRY(const double copy, place.copy(pass.bytes));
+    VKMESH_TRY(const double milliseconds, run());
+    VKMESH_TRY(const double copy, place.copy(bytes));
     if (i == 0) continue;
     measured.milliseconds.push_back(milliseconds);
     copies.push_back(copy);
@@ -237,27 +158,34 @@ class Bench {
       : job_(job), place_(place), options_(options), rows_(job.json()["result"]["rows"] = Json::array()) {}
 
   Result<void> measure_all(const std::string& file, const BenchSubject& subject) {
-    const auto triangles = static_cast<double>(subject.mesh.face_count());
+    const PassInput input(subject.mesh, subject.positions);
+    const PassBytes bytes(subject.mesh);
     job_.row(grouped(subject.mesh.face_count()) + " triangles", "median ms  ns/triangle      GB/s  x copy");
-    return place_.for_each_pass(subject, options_.only, [&](const BenchPass& pass) -> Result<void> {
-      VKMESH_TRY(const Measured measured, measure(job_, place_, pass, options_.repetitions));
-      const double ms = median(measured.milliseconds), each = 1e6 * ms / triangles,
-                   rate = static_cast<double>(pass.bytes) / ms / 1e6, ratio = ms / measured.copy;
-      job_.row("  " + pass.name, columns("%9.3f  %11.2f  %8.2f  %6.2f", ms, each, rate, ratio));
-      rows_.push_back({{"file", file},
-                       {"triangles", subject.mesh.face_count()},
-                       {"vertices", subject.mesh.vertex_count()},
-                       {"pass", pass.name},
-                       {"milliseconds", measured.milliseconds},
-                       {"median_ms", ms},
-                       {"ns_per_triangle", each},
-                       {"bytes", pass.bytes},
-                       {"copy_ms", measured.copy},
-                       {"times_copy", ratio},
-                       {"share_of_copy_bandwidth", 0.5 / ratio}});
-      per_triangle_[pass.name].push_back(each);
-      return {};
-    });
+    for (const PassRow& row : pass_table()) {
+      if (row.title.empty() || !wanted(row.title)) continue;
+      VKMESH_TRY(const BenchPlace::Run run, place_.prepare(row, input));
+      const BenchPlace::Run step = [&]() -> Result<double> {
+        VKMESH_TRY(const double milliseconds, run());
+        return milliseconds / row.steps;
+      };
+      VKMESH_CHECK(measure_one(file, subject, row.title, row.bytes(bytes), step));
+    }
+    if (!place_.decimates()) return {};
+    // Removed is nine tenths of the vertices, so the time of a triangle tells that of a removal.
+    const std::uint64_t in = bytes.points + bytes.corners;
+    for (const auto& [title, operation] :
+         {std::pair("decimation by edge collapses", DecimateOperation::kEdgeCollapse),
+          std::pair("decimation by half-edge collapses", DecimateOperation::kHalfEdgeCollapse),
+          std::pair("decimation by vertex removals", DecimateOperation::kVertexRemoval)}) {
+      DecimateOptions options;
+      options.operation = operation;
+      options.target_ratio = 0.1;
+      const auto run = [&] {
+        return timed([&] { return decimate({subject.positions, subject.mesh.origins()}, options); });
+      };
+      if (wanted(title)) VKMESH_CHECK(measure_one(file, subject, title, in + in / 10, run));
+    }
+    return {};
   }
 
   /// How the time of a triangle changes from size to size.
@@ -273,6 +201,32 @@ class Bench {
   }
 
  private:
+  [[nodiscard]] bool wanted(const std::string& title) const {
+    return title.find(options_.only) != std::string::npos;
+  }
+
+  Result<void> measure_one(const std::string& file, const BenchSubject& subject, const std::string& title,
+                           std::uint64_t bytes, const BenchPlace::Run& run) {
+    VKMESH_TRY(const Measured measured, measure(job_, place_, title, bytes, run, options_.repetitions));
+    const auto triangles = static_cast<double>(subject.mesh.face_count());
+    const double ms = median(measured.milliseconds), each = 1e6 * ms / triangles,
+                 rate = static_cast<double>(bytes) / ms / 1e6, ratio = ms / measured.copy;
+    job_.row("  " + title, columns("%9.3f  %11.2f  %8.2f  %6.2f", ms, each, rate, ratio));
+    rows_.push_back({{"file", file},
+                     {"triangles", subject.mesh.face_count()},
+                     {"vertices", subject.mesh.vertex_count()},
+                     {"pass", title},
+                     {"milliseconds", measured.milliseconds},
+                     {"median_ms", ms},
+                     {"ns_per_triangle", each},
+                     {"bytes", bytes},
+                     {"copy_ms", measured.copy},
+                     {"times_copy", ratio},
+                     {"share_of_copy_bandwidth", 0.5 / ratio}});
+    per_triangle_[title].push_back(each);
+    return {};
+  }
+
   Job& job_;
   BenchPlace& place_;
   const BenchOptions& options_;

@@ -55,8 +55,7 @@ tl::unexpected<Error> does_not_fit(const std::string& name, std::uint64_t bytes,
 
 }  // namespace
 
-Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemory memory,
-                              const std::string& name) {
+Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemory memory, const char* name) {
   return detail::catching([&]() -> Result<Buffer> {
     detail::Device& device = context.device();
     const auto& vk = device.functions;
@@ -72,13 +71,14 @@ Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemor
     buffer.size_ = bytes;
     VkBufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = std::max<std::uint64_t>((bytes + 7) / 8 * 8, 8);  // Kernels load eight bytes at once.
+    // Kernels load eight bytes at once, and one element even of an empty list: three corners or coordinates.
+    info.size = std::max<std::uint64_t>((bytes + 7) / 8 * 8, 16);
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
-    const std::string what = "making buffer '" + name + "'";
+    const std::string what = "making buffer '" + std::string(name) + "'";
     VKMESH_VK(vk.vkCreateBuffer(device.handle, &info, nullptr, &buffer.buffer_), what);
     device.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.buffer_), name);
 

@@ -6,8 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <vkmesh/engine/core/buffer.h>
-#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/core/dispatch.h>
 #include <vkmesh/math/arithmetic.h>
 
 #include "core/canary_params.h"
@@ -89,21 +88,17 @@ std::string hexadecimal(float value) {
 }  // namespace
 
 Result<void> check_exactness(Context& context) {
+  DeviceArray<float> input_array, result_array;
   const std::vector<float> inputs = make_inputs();
-  std::vector<float> results(kCases * VKMESH_CANARY_RESULTS);
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(context, shaders::canary));
-  VKMESH_TRY(Buffer input_buffer,
-             Buffer::create(context, inputs.size() * sizeof(float), BufferMemory::kDevice, "canary inputs"));
-  VKMESH_TRY(const Buffer result_buffer, Buffer::create(context, results.size() * sizeof(float),
-                                                        BufferMemory::kDevice, "canary results"));
-  VKMESH_CHECK(input_buffer.upload_values<float>(inputs));
+  VKMESH_CHECK(input_array.upload(context, inputs, "canary inputs"));
   VKMESH_TRY(Recorder recorder, Recorder::create(context));
-  kernels::CanaryParams params{};
-  params.inputs = input_buffer.address();
-  params.results = result_buffer.address();
-  VKMESH_CHECK(recorder.dispatch(*kernel, params, kCases, {&input_buffer}, {&result_buffer}));
+  using P = kernels::CanaryParams;
+  VKMESH_CHECK(Dispatch<P>(recorder, shaders::canary, kCases)
+                   .read(&P::inputs, input_array)
+                   .write(&P::results, result_array, kCases * VKMESH_CANARY_RESULTS)
+                   .record());
   VKMESH_CHECK(recorder.submit_and_wait());
-  VKMESH_CHECK(result_buffer.download_values<float>(results));
+  VKMESH_TRY(const std::vector<float> results, result_array.download());
 
   for (std::uint32_t i = 0; i < kCases; ++i) {
     const auto wanted = expected(inputs.data() + i * VKMESH_CANARY_INPUTS, i);

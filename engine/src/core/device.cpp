@@ -212,7 +212,7 @@ Result<const Kernel*> Device::kernel(const KernelSource& source) {
     return found->second.kernel.get();
   }
   // The place in the map comes first, so that a made pipeline cannot be lost to an allocation that fails.
-  const auto [place, inserted] = kernels_.try_emplace(std::string(source.name));
+  const auto [place, inserted] = kernels_.try_emplace(source.name);
   auto made = make_kernel(
       source, {.round_to_nearest_even = rounds_to_nearest_even, .keep_signed_zeros = keeps_signed_zeros});
   if (!made) {
@@ -227,7 +227,7 @@ Result<void> Device::replace_kernel(const KernelSource& source) {
   const std::lock_guard lock(kernels_mutex_);
   if (kernels_.contains(source.name))
     return fail(ErrorCode::kUsage, "the kernel '" + std::string(source.name) + "' was made already");
-  CachedKernel& place = kernels_[std::string(source.name)];
+  CachedKernel& place = kernels_[source.name];
   VKMESH_TRY(place.kernel, make_kernel(source, {}));
   return {};
 }

@@ -187,11 +187,13 @@ std::vector<SectionTime> Recorder::section_times() const {
   return state_->times;
 }
 
-Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push_constants,
-                                      std::uint64_t threads, std::span<const Buffer* const> reads,
-                                      std::span<const Buffer* const> writes) {
+Result<void> Recorder::dispatch(const KernelSource& source, std::span<const std::byte> push_constants,
+                                std::uint64_t threads, std::span<const Buffer* const> reads,
+                                std::span<const Buffer* const> writes) {
   return detail::catching([&]() -> Result<void> {
     VKMESH_CHECK(state_->require_recording());
+    VKMESH_TRY(const Kernel* made, state_->device().kernel(source));
+    const Kernel& kernel = *made;
     if ((push_constants.size() + 7) / 8 * 8 != kernel.push_constant_bytes())
       return fail(ErrorCode::kUsage,
                   "kernel '" + kernel.name() + "' takes " + std::to_string(kernel.push_constant_bytes()) +
@@ -201,6 +203,12 @@ Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std:
                   "a kernel's elements are counted in 32 bits: " + std::to_string(threads) +
                       " are too many for '" + kernel.name() + "'");
     if (threads == 0) return {};
+    for (const auto& buffers : {reads, writes})
+      for (const Buffer* buffer : buffers)
+        if (buffer->context() != state_->context)
+          return fail(ErrorCode::kUsage, "kernel '" + kernel.name() +
+                                             "' was given memory that nothing was written to, or that "
+                                             "another context made");
     const detail::Device& d = state_->device();
     const auto& vk = d.functions;
     const std::uint64_t group = kernel.workgroup_size();
@@ -209,15 +217,15 @@ Result<void> Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std:
 
     state_->order(reads, writes);
     vk.vkCmdBindPipeline(state_->commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-    std::vector<std::byte> constants(push_constants.begin(), push_constants.end());
+    vk.vkCmdPushConstants(state_->commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                          static_cast<std::uint32_t>(push_constants.size()), push_constants.data());
     // The parts write different elements of the same buffers, so that no barrier goes between them.
     for (std::uint64_t first = 0; first < threads; first += groups_at_once * group) {
       const std::uint32_t range[2] = {
           static_cast<std::uint32_t>(first),
           static_cast<std::uint32_t>(std::min<std::uint64_t>(threads - first, groups_at_once * group))};
-      std::memcpy(constants.data(), range, sizeof(range));
-      vk.vkCmdPushConstants(state_->commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                            static_cast<std::uint32_t>(constants.size()), constants.data());
+      vk.vkCmdPushConstants(state_->commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof range,
+                            range);
       vk.vkCmdDispatch(state_->commands, static_cast<std::uint32_t>((range[1] + group - 1) / group), 1, 1);
       ++state_->counts.dispatches;
     }

@@ -141,23 +141,14 @@ std::uint64_t address_of(const Buffer* buffer) {
 
 }  // namespace
 
-Result<DrawGeometry> geometry_of(const DeviceMesh& mesh) {
+Result<DrawGeometry> geometry_of(DeviceMesh& mesh) {
   DrawGeometry geometry;
   geometry.points = mesh.vertex_count();
   geometry.triangles = mesh.face_count();
-  if (geometry.triangles > 0 && mesh.corners().size() == 0)
-    return fail(ErrorCode::kUsage, "the mesh was made for no pass that brings its corners to the device");
-  if (geometry.points > 0) geometry.positions = &mesh.positions();
-  if (geometry.triangles > 0) geometry.corners = &mesh.corners();
-  if (mesh.vertex_normals().size() > 0) geometry.normals = &mesh.vertex_normals();
-  if (mesh.vertex_maxima().size() > 0) geometry.values = &mesh.vertex_maxima();
+  VKMESH_TRY(const auto* corners, mesh.corners());
+  if (geometry.points > 0) geometry.positions = &mesh.positions().buffer();
+  if (geometry.triangles > 0) geometry.corners = &corners->buffer();
   return geometry;
-}
-
-Result<void> record_draw(Recorder& recorder, const DeviceMesh& mesh, const Camera& camera,
-                         const DrawStyle& style, RenderTarget& target) {
-  VKMESH_TRY(const DrawGeometry geometry, geometry_of(mesh));
-  return record_draw(recorder, geometry, camera, style, target);
 }
 
 Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const Camera& camera,

@@ -29,7 +29,7 @@ template <class T>
 Result<void> fill(Context& context, Buffer& buffer, const char* name, std::span<const T> values) {
   if (values.empty()) return {};
   VKMESH_TRY(buffer, Buffer::create(context, values.size_bytes(), BufferMemory::kDevice, name));
-  return buffer.upload_values(values);
+  return buffer.upload(std::as_bytes(values));
 }
 
 /// For each triangle the edges that it shares with another one of the same polygon. Empty where no polygon

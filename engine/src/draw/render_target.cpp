@@ -22,7 +22,7 @@ Result<void> RenderTarget::State::make_view(VkDescriptorSetLayout layout) {
   const detail::Device& device = context.device();
   const auto& vk = device.functions;
   const std::string name = "parameters of the picture", what = "describing the " + name;
-  VKMESH_TRY(view, Buffer::create(context, sizeof(kernels::DrawView), BufferMemory::kDevice, name));
+  VKMESH_TRY(view, Buffer::create(context, sizeof(kernels::DrawView), BufferMemory::kDevice, name.c_str()));
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1};
   const VkDescriptorPoolCreateInfo info{
       VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 1, &size};

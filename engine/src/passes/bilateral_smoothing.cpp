@@ -1,6 +1,7 @@
 #include <vector>
 
 #include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/engine/core/dispatch.h>
 #include <vkmesh/engine/passes/bilateral_smoothing.h>
 #include <vkmesh/math/arithmetic.h>
 #include <vkmesh/passes/detail/bilateral_grid.h>
@@ -9,15 +10,6 @@
 #include "shaders.h"
 
 namespace vkmesh {
-namespace {
-
-template <class T>
-Result<void> fill(Context& context, Buffer& buffer, const std::vector<T>& values, const char* name) {
-  VKMESH_TRY(buffer, Buffer::create(context, values.size() * sizeof(T), BufferMemory::kDevice, name));
-  return buffer.upload_values<T>(values);
-}
-
-}  // namespace
 
 Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& mesh,
                                         std::span<const Vec3> positions,
@@ -25,8 +17,8 @@ Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& me
   return detail::catching([&]() -> Result<NearbyFaces> {
     VKMESH_CHECK(detail::require_bilateral_options(options));
     NearbyFaces nearby;
-    nearby.options_ = options;
-    nearby.vertices_of_mesh_ = static_cast<std::uint32_t>(mesh.vertex_count());
+    nearby.options = options;
+    nearby.mesh_vertices = static_cast<std::uint32_t>(mesh.vertex_count());
     if (!mesh.is_triangles())
       return fail(ErrorCode::kUnsuitable, "a device takes triangles only: triangulate the polygons first");
     if (positions.size() != mesh.vertex_count())
@@ -36,10 +28,8 @@ Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& me
     VKMESH_CHECK(prepare_positions(positions, prepared));
     VKMESH_TRY(const detail::BilateralGrid grid, detail::bilateral_grid(mesh, prepared, options));
 
-    nearby.faces_ = static_cast<std::uint32_t>(mesh.face_count());
-    nearby.vertices_ = static_cast<std::uint32_t>(grid.used.size());
-    std::vector<std::uint32_t> face_order(nearby.faces_), vertex_order(nearby.vertices_),
-        cells(nearby.vertices_);
+    std::vector<std::uint32_t> face_order(mesh.face_count()), vertex_order(grid.used.size()),
+        cells(grid.used.size());
     for (std::size_t i = 0; i < face_order.size(); ++i) face_order[i] = grid.faces.index(i);
     for (std::size_t i = 0; i < vertex_order.size(); ++i) vertex_order[i] = grid.used[grid.vertices.index(i)];
     std::vector<std::uint32_t> near_offsets = {0}, near_ends, far_offsets = {0}, far_ends;
@@ -69,79 +59,60 @@ Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& me
       add(grid.vertices.key_of_cell(cell), 2, far_offsets, far_ends);
       VKMESH_CHECK(require_few(far_offsets, far_ends));
     }
-    VKMESH_CHECK(fill(context, nearby.face_order_, face_order, "faces by place"));
-    VKMESH_CHECK(fill(context, nearby.vertex_order_, vertex_order, "vertices by place"));
-    VKMESH_CHECK(fill(context, nearby.cells_, cells, "cells of vertices"));
-    VKMESH_CHECK(fill(context, nearby.near_.offsets, near_offsets, "near offsets"));
-    VKMESH_CHECK(fill(context, nearby.near_.ends, near_ends, "near ranges"));
-    VKMESH_CHECK(fill(context, nearby.far_.offsets, far_offsets, "far offsets"));
-    VKMESH_CHECK(fill(context, nearby.far_.ends, far_ends, "far ranges"));
-    const auto make = [&](Buffer& buffer, std::uint64_t bytes, const char* name) -> Result<void> {
-      VKMESH_TRY(buffer, Buffer::create(context, bytes, BufferMemory::kDevice, name));
-      return {};
-    };
-    VKMESH_CHECK(make(nearby.centroids_and_areas_, 16 * std::uint64_t{nearby.faces_}, "centroids and areas"));
-    VKMESH_CHECK(make(nearby.normals_, 12 * std::uint64_t{nearby.faces_}, "mollified normals"));
-    VKMESH_CHECK(
-        make(nearby.mollified_, 12 * std::uint64_t{nearby.vertices_of_mesh_}, "mollified positions"));
+    const auto fill = [&](DeviceArray<std::uint32_t>& array, const std::vector<std::uint32_t>& values,
+                          const char* name) { return array.upload(context, values, name); };
+    VKMESH_CHECK(fill(nearby.face_order, face_order, "faces by place"));
+    VKMESH_CHECK(fill(nearby.vertex_order, vertex_order, "vertices by place"));
+    VKMESH_CHECK(fill(nearby.cells, cells, "cells of vertices"));
+    VKMESH_CHECK(fill(nearby.near.offsets, near_offsets, "near offsets"));
+    VKMESH_CHECK(fill(nearby.near.ends, near_ends, "near ranges"));
+    VKMESH_CHECK(fill(nearby.far.offsets, far_offsets, "far offsets"));
+    VKMESH_CHECK(fill(nearby.far.ends, far_ends, "far ranges"));
     return nearby;
   });
 }
 
-Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh, const NearbyFaces& nearby) {
-  if (!mesh.passes().bilateral_smoothing)
-    return fail(ErrorCode::kUsage, "the mesh was not made for the pass bilateral_smoothing");
-  if (nearby.vertices_of_mesh_ != mesh.vertex_count() || nearby.faces_ != mesh.face_count())
+Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh, NearbyFaces& nearby) {
+  const std::size_t faces = nearby.face_order.size(), vertices = nearby.vertex_order.size();
+  if (nearby.mesh_vertices != mesh.vertex_count() || faces != mesh.face_count())
     return fail(ErrorCode::kUsage, "the nearby faces are those of another mesh");
-  if (nearby.faces_ == 0) return {};
-  VKMESH_TRY(const Kernel* faces, Kernel::get(recorder.context(), shaders::bilateral_faces));
-  VKMESH_TRY(const Kernel* mollify, Kernel::get(recorder.context(), shaders::bilateral_mollify));
-  VKMESH_TRY(const Kernel* normals, Kernel::get(recorder.context(), shaders::bilateral_normals));
-  VKMESH_TRY(const Kernel* move, Kernel::get(recorder.context(), shaders::bilateral_move));
-
-  kernels::BilateralFacesParams of_faces{};
-  of_faces.positions = mesh.positions().address();
-  of_faces.corners = mesh.corners().address();
-  of_faces.face_order = nearby.face_order_.address();
-  of_faces.faces = nearby.centroids_and_areas_.address();
-  of_faces.spatial = nearby.options_.spatial;
-  VKMESH_CHECK(recorder.dispatch(*faces, of_faces, nearby.faces_,
-                                 {&mesh.positions(), &mesh.corners(), &nearby.face_order_},
-                                 {&nearby.centroids_and_areas_}));
-
-  kernels::BilateralSumParams sum{};
-  sum.positions = mesh.positions().address();
-  sum.vertex_order = nearby.vertex_order_.address();
-  sum.cells = nearby.cells_.address();
-  sum.faces = nearby.centroids_and_areas_.address();
-  sum.normals = nearby.normals_.address();
-  sum.spatial = nearby.options_.spatial;
-  sum.per_spatial = reciprocal(nearby.options_.spatial);
-  sum.spatial_over_influence = nearby.options_.spatial * reciprocal(nearby.options_.influence);
-  sum.range_offsets = nearby.near_.offsets.address();
-  sum.ranges = nearby.near_.ends.address();
-  sum.target = nearby.mollified_.address();
-  VKMESH_CHECK(recorder.dispatch(*mollify, sum, nearby.vertices_,
-                                 {&mesh.positions(), &nearby.vertex_order_, &nearby.cells_,
-                                  &nearby.near_.offsets, &nearby.near_.ends, &nearby.centroids_and_areas_},
-                                 {&nearby.mollified_}));
-
-  kernels::BilateralNormalsParams of_mollified{};
-  of_mollified.mollified = nearby.mollified_.address();
-  of_mollified.corners = mesh.corners().address();
-  of_mollified.face_order = nearby.face_order_.address();
-  of_mollified.normals = nearby.normals_.address();
-  VKMESH_CHECK(recorder.dispatch(*normals, of_mollified, nearby.faces_,
-                                 {&nearby.mollified_, &mesh.corners(), &nearby.face_order_},
-                                 {&nearby.normals_}));
-
-  sum.range_offsets = nearby.far_.offsets.address();
-  sum.ranges = nearby.far_.ends.address();
-  sum.target = mesh.positions().address();
-  return recorder.dispatch(*move, sum, nearby.vertices_,
-                           {&mesh.positions(), &nearby.vertex_order_, &nearby.cells_, &nearby.far_.offsets,
-                            &nearby.far_.ends, &nearby.centroids_and_areas_, &nearby.normals_},
-                           {&mesh.positions()});
+  if (faces == 0) return {};
+  using F = kernels::BilateralFacesParams;
+  VKMESH_CHECK(Dispatch<F>(recorder, shaders::bilateral_faces, faces)
+                   .read(&F::positions, mesh.positions())
+                   .read(&F::corners, mesh.corners())
+                   .read(&F::face_order, nearby.face_order)
+                   .write(&F::faces, nearby.centroids_and_areas, 4 * faces)
+                   .set(&F::spatial, nearby.options.spatial)
+                   .record());
+  VKMESH_CHECK(nearby.mollified.resize(recorder.context(), mesh.vertex_count(), "mollified positions"));
+  VKMESH_CHECK(nearby.normals.resize(recorder.context(), faces, "mollified normals"));
+  const auto sum = [&](const KernelSource& kernel, const NearbyFaces::Ranges& ranges,
+                       const DeviceArray<Vec3>& target) {
+    using P = kernels::BilateralSumParams;
+    return Dispatch<P>(recorder, kernel, vertices)
+        .read(&P::positions, mesh.positions())
+        .read(&P::vertex_order, nearby.vertex_order)
+        .read(&P::cells, nearby.cells)
+        .read(&P::range_offsets, ranges.offsets)
+        .read(&P::ranges, ranges.ends)
+        .read(&P::faces, nearby.centroids_and_areas)
+        .read(&P::normals, nearby.normals)
+        .write(&P::target, target)
+        .set(&P::spatial, nearby.options.spatial)
+        .set(&P::per_spatial, reciprocal(nearby.options.spatial))
+        .set(&P::spatial_over_influence, nearby.options.spatial * reciprocal(nearby.options.influence))
+        .record();
+  };
+  VKMESH_CHECK(sum(shaders::bilateral_mollify, nearby.near, nearby.mollified));
+  using N = kernels::BilateralNormalsParams;
+  VKMESH_CHECK(Dispatch<N>(recorder, shaders::bilateral_normals, faces)
+                   .read(&N::mollified, nearby.mollified)
+                   .read(&N::corners, mesh.corners())
+                   .read(&N::face_order, nearby.face_order)
+                   .write(&N::normals, nearby.normals)
+                   .record());
+  return sum(shaders::bilateral_move, nearby.far, mesh.positions());
 }
 
 }  // namespace vkmesh

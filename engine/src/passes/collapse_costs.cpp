@@ -1,3 +1,4 @@
+#include <vkmesh/engine/core/dispatch.h>
 #include <vkmesh/engine/passes/collapse_costs.h>
 #include <vkmesh/passes/detail/raw_measures.h>
 
@@ -6,44 +7,36 @@
 
 namespace vkmesh {
 
-Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh, const CollapseCostOptions& options) {
-  if (!mesh.passes().collapse_costs)
-    return fail(ErrorCode::kUsage, "the mesh was not made for the pass collapse_costs");
+Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh, DeviceCollapseCosts& result,
+                                   const CollapseCostOptions& options) {
   VKMESH_CHECK(detail::require_collapse_cost_options(options));
-  VKMESH_TRY(const Kernel* quadrics, Kernel::get(recorder.context(), shaders::quadrics));
-  VKMESH_TRY(const Kernel* costs, Kernel::get(recorder.context(), shaders::collapse_costs));
-
-  kernels::QuadricsParams of_vertices{};
-  of_vertices.positions = mesh.positions().address();
-  of_vertices.corners = mesh.corners().address();
-  of_vertices.twins = mesh.twins().address();
-  of_vertices.corner_offsets = mesh.corner_offsets().address();
-  of_vertices.corner_half_edges = mesh.corner_half_edges().address();
-  of_vertices.quadrics = mesh.quadrics().address();
-  of_vertices.centre_x = options.centre.x;
-  of_vertices.centre_y = options.centre.y;
-  of_vertices.centre_z = options.centre.z;
-  of_vertices.scale = options.scale;
-  of_vertices.boundary_weight = options.boundary_weight;
-  VKMESH_CHECK(recorder.dispatch(
-      *quadrics, of_vertices, mesh.vertex_count(),
-      {&mesh.positions(), &mesh.corners(), &mesh.twins(), &mesh.corner_offsets(), &mesh.corner_half_edges()},
-      {&mesh.quadrics()}));
-
-  kernels::CollapseCostsParams of_edges{};
-  of_edges.positions = mesh.positions().address();
-  of_edges.corners = mesh.corners().address();
-  of_edges.twins = mesh.twins().address();
-  of_edges.quadrics = mesh.quadrics().address();
-  of_edges.costs = mesh.collapse_costs().address();
-  of_edges.centre_x = options.centre.x;
-  of_edges.centre_y = options.centre.y;
-  of_edges.centre_z = options.centre.z;
-  of_edges.scale = options.scale;
-  of_edges.placement = static_cast<std::uint32_t>(options.placement);
-  return recorder.dispatch(*costs, of_edges, mesh.half_edge_count(),
-                           {&mesh.positions(), &mesh.corners(), &mesh.twins(), &mesh.quadrics()},
-                           {&mesh.collapse_costs()});
+  using Q = kernels::QuadricsParams;
+  VKMESH_CHECK(Dispatch<Q>(recorder, shaders::quadrics, mesh.vertex_count())
+                   .read(&Q::positions, mesh.positions())
+                   .read(&Q::corners, mesh.corners())
+                   .read(&Q::twins, mesh.twins())
+                   .read(&Q::corner_offsets, mesh.corner_offsets())
+                   .read(&Q::corner_half_edges, mesh.corner_half_edges())
+                   .write(&Q::quadrics, result.quadrics, mesh.vertex_count())
+                   .set(&Q::centre_x, options.centre.x)
+                   .set(&Q::centre_y, options.centre.y)
+                   .set(&Q::centre_z, options.centre.z)
+                   .set(&Q::scale, options.scale)
+                   .set(&Q::boundary_weight, options.boundary_weight)
+                   .record());
+  using P = kernels::CollapseCostsParams;
+  return Dispatch<P>(recorder, shaders::collapse_costs, mesh.half_edge_count())
+      .read(&P::positions, mesh.positions())
+      .read(&P::corners, mesh.corners())
+      .read(&P::twins, mesh.twins())
+      .read(&P::quadrics, result.quadrics)
+      .write(&P::costs, result.costs, mesh.half_edge_count())
+      .set(&P::centre_x, options.centre.x)
+      .set(&P::centre_y, options.centre.y)
+      .set(&P::centre_z, options.centre.z)
+      .set(&P::scale, options.scale)
+      .set(&P::placement, static_cast<std::uint32_t>(options.placement))
+      .record();
 }
 
 }  // namespace vkmesh

@@ -5,32 +5,23 @@
 
 namespace vkmesh {
 
-Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh) {
-  if (!mesh.passes().dihedral_angles)
-    return fail(ErrorCode::kUsage, "the mesh was not made for the pass dihedral_angles");
-  VKMESH_TRY(const Kernel* angles, Kernel::get(recorder.context(), shaders::dihedral_angles));
-  VKMESH_TRY(const Kernel* maxima, Kernel::get(recorder.context(), shaders::vertex_maxima));
-
-  VKMESH_CHECK(detail::record_face_vectors(recorder, mesh, shaders::triangle_normals, mesh.face_vectors()));
-
-  kernels::DihedralAnglesParams of_half_edges{};
-  of_half_edges.positions = mesh.positions().address();
-  of_half_edges.corners = mesh.corners().address();
-  of_half_edges.normals = mesh.face_vectors().address();
-  of_half_edges.twins = mesh.twins().address();
-  of_half_edges.angles = mesh.half_edge_angles().address();
-  VKMESH_CHECK(recorder.dispatch(*angles, of_half_edges, mesh.half_edge_count(),
-                                 {&mesh.positions(), &mesh.corners(), &mesh.face_vectors(), &mesh.twins()},
-                                 {&mesh.half_edge_angles()}));
-
-  kernels::VertexMaximaParams of_vertices{};
-  of_vertices.angles = mesh.half_edge_angles().address();
-  of_vertices.corner_offsets = mesh.corner_offsets().address();
-  of_vertices.corner_half_edges = mesh.corner_half_edges().address();
-  of_vertices.maxima = mesh.vertex_maxima().address();
-  return recorder.dispatch(*maxima, of_vertices, mesh.vertex_count(),
-                           {&mesh.half_edge_angles(), &mesh.corner_offsets(), &mesh.corner_half_edges()},
-                           {&mesh.vertex_maxima()});
+Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh, DeviceDihedralAngles& result) {
+  VKMESH_CHECK(detail::record_face_vectors(recorder, mesh, shaders::triangle_normals, result.normals));
+  using P = kernels::DihedralAnglesParams;
+  VKMESH_CHECK(Dispatch<P>(recorder, shaders::dihedral_angles, mesh.half_edge_count())
+                   .read(&P::positions, mesh.positions())
+                   .read(&P::corners, mesh.corners())
+                   .read(&P::normals, result.normals)
+                   .read(&P::twins, mesh.twins())
+                   .write(&P::angles, result.half_edge, mesh.half_edge_count())
+                   .record());
+  using Maxima = kernels::VertexMaximaParams;
+  return Dispatch<Maxima>(recorder, shaders::vertex_maxima, mesh.vertex_count())
+      .read(&Maxima::angles, result.half_edge)
+      .read(&Maxima::corner_offsets, mesh.corner_offsets())
+      .read(&Maxima::corner_half_edges, mesh.corner_half_edges())
+      .write(&Maxima::maxima, result.vertex_maximum, mesh.vertex_count())
+      .record();
 }
 
 }  // namespace vkmesh

@@ -1,7 +1,7 @@
 // A vector for each face, as several passes need it.
 #pragma once
 
-#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/core/dispatch.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 
 #include "passes/triangle_normals_params.h"
@@ -9,16 +9,15 @@
 
 namespace vkmesh::detail {
 
-/// Records triangle_areas or triangle_normals, into `vectors`.
-inline Result<void> record_face_vectors(Recorder& recorder, const DeviceMesh& mesh,
-                                        const KernelSource& source, const Buffer& vectors) {
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), source));
-  kernels::TrianglesParams params{};
-  params.positions = mesh.positions().address();
-  params.corners = mesh.corners().address();
-  params.vectors = vectors.address();
-  return recorder.dispatch(*kernel, params, mesh.face_count(), {&mesh.positions(), &mesh.corners()},
-                           {&vectors});
+/// Records shaders::triangle_areas or shaders::triangle_normals.
+inline Result<void> record_face_vectors(Recorder& recorder, DeviceMesh& mesh, const KernelSource& kernel,
+                                        DeviceArray<Vec3>& vectors) {
+  using P = kernels::TrianglesParams;
+  return Dispatch<P>(recorder, kernel, mesh.face_count())
+      .read(&P::positions, mesh.positions())
+      .read(&P::corners, mesh.corners())
+      .write(&P::vectors, vectors, mesh.face_count())
+      .record();
 }
 
 }  // namespace vkmesh::detail

@@ -6,44 +6,37 @@
 namespace vkmesh {
 namespace {
 
-Result<void> record_sum_by_angle(Recorder& recorder, const DeviceMesh& mesh) {
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), shaders::vertex_normals_by_angle));
-  kernels::VertexNormalsByAngleParams params{};
-  params.positions = mesh.positions().address();
-  params.corners = mesh.corners().address();
-  params.face_normals = mesh.face_vectors().address();
-  params.corner_offsets = mesh.corner_offsets().address();
-  params.corner_half_edges = mesh.corner_half_edges().address();
-  params.normals = mesh.vertex_normals().address();
-  return recorder.dispatch(*kernel, params, mesh.vertex_count(),
-                           {&mesh.positions(), &mesh.corners(), &mesh.face_vectors(), &mesh.corner_offsets(),
-                            &mesh.corner_half_edges()},
-                           {&mesh.vertex_normals()});
+Result<void> record_sum_by_angle(Recorder& recorder, DeviceMesh& mesh, DeviceVertexNormals& result) {
+  using P = kernels::VertexNormalsByAngleParams;
+  return Dispatch<P>(recorder, shaders::vertex_normals_by_angle, mesh.vertex_count())
+      .read(&P::positions, mesh.positions())
+      .read(&P::corners, mesh.corners())
+      .read(&P::face_normals, result.face_vectors)
+      .read(&P::corner_offsets, mesh.corner_offsets())
+      .read(&P::corner_half_edges, mesh.corner_half_edges())
+      .write(&P::normals, result.normals, mesh.vertex_count())
+      .record();
 }
 
-Result<void> record_sum(Recorder& recorder, const DeviceMesh& mesh) {
-  VKMESH_TRY(const Kernel* kernel, Kernel::get(recorder.context(), shaders::vertex_normals));
-  kernels::VertexNormalsParams params{};
-  params.areas = mesh.face_vectors().address();
-  params.corner_offsets = mesh.corner_offsets().address();
-  params.corner_half_edges = mesh.corner_half_edges().address();
-  params.normals = mesh.vertex_normals().address();
-  return recorder.dispatch(*kernel, params, mesh.vertex_count(),
-                           {&mesh.face_vectors(), &mesh.corner_offsets(), &mesh.corner_half_edges()},
-                           {&mesh.vertex_normals()});
+Result<void> record_sum(Recorder& recorder, DeviceMesh& mesh, DeviceVertexNormals& result) {
+  using P = kernels::VertexNormalsParams;
+  return Dispatch<P>(recorder, shaders::vertex_normals, mesh.vertex_count())
+      .read(&P::areas, result.face_vectors)
+      .read(&P::corner_offsets, mesh.corner_offsets())
+      .read(&P::corner_half_edges, mesh.corner_half_edges())
+      .write(&P::normals, result.normals, mesh.vertex_count())
+      .record();
 }
 
 }  // namespace
 
-Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh,
+Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh, DeviceVertexNormals& result,
                                    const VertexNormalsOptions& options) {
-  if (!mesh.passes().vertex_normals)
-    return fail(ErrorCode::kUsage, "the mesh was not made for the pass vertex_normals");
   const bool by_area = options.weights == NormalWeights::kArea;
   VKMESH_CHECK(detail::record_face_vectors(
-      recorder, mesh, by_area ? shaders::triangle_areas : shaders::triangle_normals, mesh.face_vectors()));
-  return options.weights == NormalWeights::kAngle ? record_sum_by_angle(recorder, mesh)
-                                                  : record_sum(recorder, mesh);
+      recorder, mesh, by_area ? shaders::triangle_areas : shaders::triangle_normals, result.face_vectors));
+  return options.weights == NormalWeights::kAngle ? record_sum_by_angle(recorder, mesh, result)
+                                                  : record_sum(recorder, mesh, result);
 }
 
 }  // namespace vkmesh

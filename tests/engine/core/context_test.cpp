@@ -32,13 +32,13 @@ void require_works(Context& context) {
   auto to = Buffer::create(context, 20);
   REQUIRE(from);
   REQUIRE(to);
-  REQUIRE(from->upload_values<std::uint32_t>(values));
+  REQUIRE(from->upload(std::as_bytes(std::span(values))));
   auto recorder = Recorder::create(context);
   REQUIRE(recorder);
   REQUIRE(recorder->copy(*from, *to, 20));
   REQUIRE(recorder->submit_and_wait());
   std::vector<std::uint32_t> copied(5);
-  REQUIRE(to->download_values<std::uint32_t>(copied));
+  REQUIRE(to->download(std::as_writable_bytes(std::span(copied))));
   CHECK(copied == values);
 }
 

@@ -9,9 +9,8 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
-#include <vkmesh/engine/core/buffer.h>
-#include <vkmesh/engine/core/kernel.h>
-#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/core/dispatch.h>
+#include <vkmesh/engine/mesh/device_mesh.h>
 
 #include "core/device.h"
 #include "core/fake_loader.h"
@@ -36,14 +35,14 @@ void require_done(const Result<void>& result) {
 template <class T>
 Buffer buffer_of(Context& context, const std::vector<T>& values) {
   Buffer buffer = require(Buffer::create(context, values.size() * sizeof(T)));
-  require_done(buffer.upload_values<T>(values));
+  require_done(buffer.upload(std::as_bytes(std::span(values))));
   return buffer;
 }
 
 template <class T>
 std::vector<T> values_of(const Buffer& buffer) {
   std::vector<T> values(buffer.size() / sizeof(T));
-  require_done(buffer.download_values<T>(values));
+  require_done(buffer.download(std::as_writable_bytes(std::span(values))));
   return values;
 }
 
@@ -70,12 +69,14 @@ struct MaximaWork {
     maxima = buffer_of(context, std::vector<float>(n, -1.0f));
   }
 
-  [[nodiscard]] kernels::VertexMaximaParams params() const {
-    return {0, 0, angles.address(), offsets.address(), half_edges.address(), maxima.address()};
-  }
   void record(Recorder& recorder) const {
-    const Kernel* kernel = require(Kernel::get(recorder.context(), shaders::vertex_maxima));
-    require_done(recorder.dispatch(*kernel, params(), count, {&angles, &offsets, &half_edges}, {&maxima}));
+    using P = kernels::VertexMaximaParams;
+    require_done(Dispatch<P>(recorder, shaders::vertex_maxima, count)
+                     .read(&P::angles, angles)
+                     .read(&P::corner_offsets, offsets)
+                     .read(&P::corner_half_edges, half_edges)
+                     .write(&P::maxima, maxima)
+                     .record());
   }
 };
 
@@ -189,12 +190,22 @@ TEST_CASE("kernels and copies are ordered alike") {
 
 TEST_CASE("a recorder refuses what it cannot do") {
   MaximaWork work(test_context(), 10);
-  const Kernel* kernel = require(Kernel::get(test_context(), shaders::vertex_maxima));
   Recorder recorder = require(Recorder::create(test_context()));
-  const kernels::TrianglesParams others{};
+  using P = kernels::VertexMaximaParams;
+  const auto dispatch = [&](std::uint64_t threads) {
+    return Dispatch<P>(recorder, shaders::vertex_maxima, threads);
+  };
   const auto code = [](const Result<void>& result) { return result ? ErrorCode{} : result.error().code; };
-  CHECK(code(recorder.dispatch(*kernel, others, 1, {}, {})) == ErrorCode::kUsage);
-  CHECK(code(recorder.dispatch(*kernel, work.params(), std::uint64_t{1} << 32, {}, {})) == ErrorCode::kUsage);
+  const auto others = Dispatch<kernels::TrianglesParams>(recorder, shaders::vertex_maxima, 1).record();
+  CHECK(code(others) == ErrorCode::kUsage);
+  CHECK_THAT(others.error().message, Catch::Contains("takes 40 bytes of push constants, not 32"));
+  CHECK(code(dispatch(std::uint64_t{1} << 32).record()) == ErrorCode::kUsage);
+  // Memory that was never made, and an array that could not be.
+  CHECK(code(dispatch(1).read(&P::angles, DeviceArray<float>()).record()) == ErrorCode::kUsage);
+  CHECK(code(dispatch(1)
+                 .read(&P::corner_offsets, DeviceMesh::Indices(fail(ErrorCode::kUnsuitable, "first")))
+                 .read(&P::corner_half_edges, DeviceMesh::Indices(fail(ErrorCode::kNoDevice, "second")))
+                 .record()) == ErrorCode::kUnsuitable);
   CHECK(code(recorder.copy(work.angles, work.maxima, 41)) == ErrorCode::kUsage);
   CHECK(code(recorder.copy(work.angles, work.maxima, 8, 116, 0)) == ErrorCode::kUsage);
   CHECK(code(recorder.copy(work.angles, work.angles, 8, 0, 4)) == ErrorCode::kUsage);
@@ -203,7 +214,7 @@ TEST_CASE("a recorder refuses what it cannot do") {
   require_done(recorder.wait(std::chrono::seconds(1)));
   CHECK(code(recorder.submit_and_wait()) == ErrorCode::kUsage);
   CHECK(code(recorder.copy(work.angles, work.maxima, 4)) == ErrorCode::kUsage);
-  CHECK(code(recorder.dispatch(*kernel, work.params(), 1, {}, {})) == ErrorCode::kUsage);
+  CHECK(code(dispatch(1).record()) == ErrorCode::kUsage);
   CHECK(!Recorder::into(test_context(), VK_NULL_HANDLE));
 }
 

@@ -5,9 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <vkmesh/engine/core/buffer.h>
-#include <vkmesh/engine/core/kernel.h>
-#include <vkmesh/engine/core/recorder.h>
+#include <vkmesh/engine/core/dispatch.h>
 #include <vkmesh/engine/draw/draw.h>
 
 #include "core/device.h"
@@ -74,15 +72,14 @@ TEST_CASE("GPU-assisted validation sees reads past the end of a buffer, of kerne
   const DrawMesh on_device = require(DrawMesh::create(*context, mesh));
   DrawGeometry geometry = on_device.geometry();
   const Buffer vectors = require(Buffer::create(*context, 12 * (geometry.triangles + 1)));
-  const Kernel* kernel = require(Kernel::get(*context, shaders::triangle_areas));
-  kernels::TrianglesParams params{};
-  params.positions = geometry.positions->address();
-  params.corners = geometry.corners->address();
-  params.vectors = vectors.address();
   const auto compute = [&](std::uint32_t triangles) {
     run([&](Recorder& recorder) {
-      return recorder.dispatch(*kernel, params, triangles, {geometry.positions, geometry.corners},
-                               {&vectors});
+      using P = kernels::TrianglesParams;
+      return Dispatch<P>(recorder, shaders::triangle_areas, triangles)
+          .read(&P::positions, *geometry.positions)
+          .read(&P::corners, *geometry.corners)
+          .write(&P::vectors, vectors)
+          .record();
     });
   };
   compute(geometry.triangles);

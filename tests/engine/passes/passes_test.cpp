@@ -34,17 +34,6 @@ using namespace vkmesh;
 
 namespace {
 
-constexpr MeshPasses kAllPasses = {.vertex_normals = true,
-                                   .laplacian_smoothing = true,
-                                   .dihedral_angles = true,
-                                   .triangle_normals = true,
-                                   .curvatures = true,
-                                   .surface_measures = true,
-                                   .bilateral_smoothing = true,
-                                   .restore_volume = true,
-                                   .collapse_costs = true,
-                                   .swap_scores = true};
-
 // The number of places where two arrays differ in any bit, plus the difference in their lengths.
 std::size_t differences(std::span<const float> a, std::span<const float> b) {
   std::size_t count = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
@@ -70,9 +59,8 @@ T require(Result<T> result) {
 
 // Runs `record` on a fresh device mesh.
 template <class Record>
-DeviceMesh run(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, Record&& record,
-               const MeshPasses& passes = kAllPasses) {
-  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, positions, passes));
+DeviceMesh run(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, Record&& record) {
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, positions));
   Recorder recorder = require(Recorder::create(test::test_context()));
   require_done(record(recorder, device));
   require_done(recorder.submit_and_wait());
@@ -86,21 +74,22 @@ void check_exact_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> points) {
     CollapseCostOptions options = unit_frame(points);
     options.placement = placement;
     options.boundary_weight = 30.0f;
-    const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
-      return record_collapse_costs(recorder, on_device, options);
+    DeviceCollapseCosts result;
+    run(mesh, points, [&](Recorder& recorder, DeviceMesh& device) {
+      return record_collapse_costs(recorder, device, result, options);
     });
-    const auto found = require(device.download_quadrics()), wanted = require(quadrics(mesh, points, options));
+    const auto found = require(result.quadrics.download()), wanted = require(quadrics(mesh, points, options));
     CHECK(differences(std::span(found.empty() ? nullptr : found[0].data(), 6 * found.size()),
                       std::span(wanted.empty() ? nullptr : wanted[0].data(), 6 * wanted.size())) == 0);
-    CHECK(differences(require(device.download_collapse_costs()),
+    CHECK(differences(require(result.costs.download()),
                       require(collapse_costs(mesh, points, wanted, options))) == 0);
   }
   for (const SwapCriterion criterion : {SwapCriterion::kMinAngle, SwapCriterion::kAspectRatio}) {
-    const DeviceMesh device = run(mesh, points, [&](Recorder& recorder, DeviceMesh& on_device) {
-      return record_swap_scores(recorder, on_device, criterion);
+    DeviceArray<float> scores;
+    run(mesh, points, [&](Recorder& recorder, DeviceMesh& device) {
+      return record_swap_scores(recorder, device, scores, criterion);
     });
-    CHECK(differences(require(device.download_swap_scores()),
-                      require(swap_scores(mesh, points, criterion))) == 0);
+    CHECK(differences(require(scores.download()), require(swap_scores(mesh, points, criterion))) == 0);
   }
 }
 
@@ -109,39 +98,38 @@ void check_exact_volume(const HalfEdgeMesh& mesh, std::span<const Vec3> points) 
   const LaplacianSmoothingOptions options{.lambda = 0.8f, .iterations = 3};
   const auto smoothed = require(laplacian_smoothing(require(node_neighbours(mesh)), points, options));
   const auto wanted = restore_volume(mesh, points, smoothed);
-  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, points, kAllPasses));
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, points));
+  DeviceSurfaceMeasures before, after;
+  DeviceSmoothing smoothing;
   Recorder recorder = require(Recorder::create(test::test_context()));
-  const auto measured = record_volume(recorder, device);
-  REQUIRE(measured.has_value() == wanted.has_value());
+  require_done(record_surface_measures(recorder, device, before));
+  require_done(record_laplacian_smoothing(recorder, device, smoothing, options));
+  const auto restored = record_restore_volume(recorder, device, before, after);
+  REQUIRE(restored.has_value() == wanted.has_value());
   if (!wanted) {
-    CHECK(measured.error().code == wanted.error().code);
-    CHECK(record_restore_volume(recorder, device).error().code == wanted.error().code);
+    CHECK(restored.error().code == wanted.error().code);
     return;
   }
-  require_done(record_laplacian_smoothing(recorder, device, options));
-  require_done(record_restore_volume(recorder, device));
   require_done(recorder.submit_and_wait());
-  CHECK(differences(require(device.download_positions()), *wanted) == 0);
+  CHECK(differences(require(device.positions().download()), *wanted) == 0);
 }
 
-// With σ_f of so many mean edge lengths. Without buffers for other passes: docs/design.md says why.
+// With σ_f of so many mean edge lengths.
 void check_exact_bilateral(const HalfEdgeMesh& mesh, std::span<const Vec3> points, double widths) {
   const double edge = mean_edge_length(mesh, points);
   const BilateralSmoothingOptions options{.spatial = static_cast<float>(widths * edge),
                                           .influence = static_cast<float>(0.3 * edge)};
   const auto wanted = bilateral_smoothing(mesh, points, options);
-  const auto nearby = NearbyFaces::create(test::test_context(), mesh, points, options);
+  auto nearby = NearbyFaces::create(test::test_context(), mesh, points, options);
   REQUIRE(nearby.has_value() == wanted.has_value());
   if (!wanted) {
     CHECK(nearby.error().code == wanted.error().code);
     return;
   }
-  const DeviceMesh device = run(mesh, points,
-                                [&](Recorder& recorder, DeviceMesh& on_device) {
-                                  return record_bilateral_smoothing(recorder, on_device, *nearby);
-                                },
-                                {.bilateral_smoothing = true});
-  CHECK(differences(require(device.download_positions()), *wanted) == 0);
+  const DeviceMesh moved = run(mesh, points, [&](Recorder& recorder, DeviceMesh& device) {
+    return record_bilateral_smoothing(recorder, device, *nearby);
+  });
+  CHECK(differences(require(moved.positions().download()), *wanted) == 0);
 }
 
 // Under GPU-assisted validation a coarser one, mended: with its checks the fine one takes minutes.
@@ -155,21 +143,27 @@ void check_exact(const IndexedFaceSet& set) {
   const HalfEdgeMesh mesh = test::half_edges(set);
   Context& context = test::test_context();
   for (const NormalWeights weights : {NormalWeights::kAngle, NormalWeights::kUniform}) {
-    const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
-      return record_vertex_normals(recorder, on_device, {.weights = weights});
+    DeviceVertexNormals result;
+    run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& device) {
+      return record_vertex_normals(recorder, device, result, {.weights = weights});
     });
-    CHECK(differences(require(device.download_vertex_normals()),
+    CHECK(differences(require(result.normals.download()),
                       require(vertex_normals(mesh, set.points, {.weights = weights}))) == 0);
   }
   check_exact_costs(mesh, set.points);
   check_exact_volume(mesh, set.points);
   const NodeNeighbours neighbours = require(node_neighbours(mesh));
-  const auto bent = require(run(mesh, set.points, record_curvatures).download_curvatures());
+  DeviceArray<VertexCurvature> curved;
+  DeviceSurfaceMeasures measures;
+  run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& device) -> Result<void> {
+    VKMESH_CHECK(record_curvatures(recorder, device, curved));
+    return record_surface_measures(recorder, device, measures);
+  });
+  const auto bent = require(curved.download());
   const auto expected = require(curvatures(neighbours, set.points));
   CHECK(differences(std::span(bent.empty() ? nullptr : &bent[0].mean, 4 * bent.size()),
                     std::span(expected.empty() ? nullptr : &expected[0].mean, 4 * expected.size())) == 0);
-  const SurfaceMeasures measured =
-      require(run(mesh, set.points, record_surface_measures).download_surface_measures());
+  const SurfaceMeasures measured = require(measures.download());
   const SurfaceMeasures wanted = require(surface_measures(mesh, set.points));
   CHECK(measured.area == wanted.area);
   CHECK(measured.volume == wanted.volume);
@@ -190,34 +184,38 @@ void check_exact(const IndexedFaceSet& set) {
         .boundary = SmoothingBoundary::kAlongItself,
         .weights = SmoothingWeights::kCotangent}})
     for (const bool locked : {false, true}) {
-      const DeviceMesh device = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& on_device) {
-        if (locked) require_done(on_device.upload_locks(locks));
-        return record_laplacian_smoothing(recorder, on_device, options);
+      DeviceSmoothing smoothing;
+      if (locked) require_done(smoothing.locked.upload(context, locks));
+      const DeviceMesh smoothed = run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& device) {
+        return record_laplacian_smoothing(recorder, device, smoothing, options);
       });
       LaplacianSmoothingOptions on_host = options;
       if (locked) on_host.locked = locks;
-      CHECK(differences(require(device.download_positions()),
+      CHECK(differences(require(smoothed.positions().download()),
                         require(laplacian_smoothing(neighbours, set.points, on_host))) == 0);
     }
   for (const LaplacianSmoothingOptions& options :
        {LaplacianSmoothingOptions{.lambda = 0.5f, .iterations = 1, .boundary = SmoothingBoundary::kFixed},
         LaplacianSmoothingOptions{.lambda = 0.37f, .iterations = 10, .boundary = SmoothingBoundary::kFree}}) {
-    DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points, kAllPasses));
+    DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points));
+    DeviceArray<Vec3> of_triangles;
+    DeviceVertexNormals of_vertices;
+    DeviceDihedralAngles found;
+    DeviceSmoothing smoothing;
     Recorder recorder = require(Recorder::create(context));
-    require_done(record_triangle_normals(recorder, device));
-    require_done(record_vertex_normals(recorder, device));
-    require_done(record_dihedral_angles(recorder, device));
-    require_done(record_laplacian_smoothing(recorder, device, options));
+    require_done(record_triangle_normals(recorder, device, of_triangles));
+    require_done(record_vertex_normals(recorder, device, of_vertices));
+    require_done(record_dihedral_angles(recorder, device, found));
+    require_done(record_laplacian_smoothing(recorder, device, smoothing, options));
     require_done(recorder.submit_and_wait());
 
     const DihedralAngles angles = require(dihedral_angles(mesh, set.points));
-    CHECK(differences(require(device.download_triangle_normals()),
-                      require(triangle_normals(mesh, set.points))) == 0);
-    CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, set.points))) ==
+    CHECK(differences(require(of_triangles.download()), require(triangle_normals(mesh, set.points))) == 0);
+    CHECK(differences(require(of_vertices.normals.download()), require(vertex_normals(mesh, set.points))) ==
           0);
-    CHECK(differences(require(device.download_half_edge_angles()), angles.half_edge) == 0);
-    CHECK(differences(require(device.download_vertex_maxima()), angles.vertex_maximum) == 0);
-    CHECK(differences(require(device.download_positions()),
+    CHECK(differences(require(found.half_edge.download()), angles.half_edge) == 0);
+    CHECK(differences(require(found.vertex_maximum.download()), angles.vertex_maximum) == 0);
+    CHECK(differences(require(device.positions().download()),
                       require(laplacian_smoothing(require(node_neighbours(mesh)), set.points, options))) ==
           0);
   }
@@ -311,15 +309,18 @@ TEST_CASE("a vertex of more neighbours than the device's loops have rounds is re
     for (const std::uint32_t v : {0u, 1 + i, 1 + (i + 1) % kSides}) fan.corners.push_back(v);
   }
   const HalfEdgeMesh mesh = test::half_edges(fan);
-  for (const MeshPasses& passes :
-       {MeshPasses{.vertex_normals = true}, MeshPasses{.laplacian_smoothing = true}}) {
-    const auto device = DeviceMesh::create(test::test_context(), mesh, fan.points, passes);
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, fan.points));
+  Recorder recorder = require(Recorder::create(test::test_context()));
+  DeviceVertexNormals normals;
+  DeviceSmoothing smoothing;
+  for (const Result<void>& recorded : {record_vertex_normals(recorder, device, normals),
+                                       record_laplacian_smoothing(recorder, device, smoothing)}) {
     if (test::test_context().info().loop_rounds > kSides) {
-      CHECK(device);
+      CHECK(recorded);
     } else {
-      REQUIRE_FALSE(device);
-      CHECK(device.error().code == ErrorCode::kUnsuitable);
-      CHECK_THAT(device.error().message, Catch::Contains("vertex 0 has 70000 neighbours"));
+      REQUIRE_FALSE(recorded);
+      CHECK(recorded.error().code == ErrorCode::kUnsuitable);
+      CHECK_THAT(recorded.error().message, Catch::Contains("vertex 0 has 70000 neighbours"));
     }
   }
   const BilateralSmoothingOptions wide{.spatial = 4.0f, .influence = 1.0f};
@@ -332,45 +333,60 @@ TEST_CASE("normals after smoothing in one submission are those of the smoothed p
   test::jitter(set, 0.05f, 1);
   const HalfEdgeMesh mesh = test::half_edges(set);
   const LaplacianSmoothingOptions options{.lambda = 0.6f, .iterations = 7};
-  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, set.points, kAllPasses));
+  DeviceMesh device = require(DeviceMesh::create(test::test_context(), mesh, set.points));
+  DeviceSmoothing smoothing;
+  DeviceVertexNormals normals;
   Recorder recorder = require(Recorder::create(test::test_context()));
-  require_done(record_laplacian_smoothing(recorder, device, options));
-  require_done(record_vertex_normals(recorder, device));
+  require_done(record_laplacian_smoothing(recorder, device, smoothing, options));
+  require_done(record_vertex_normals(recorder, device, normals));
   require_done(recorder.submit_and_wait());
   const auto smoothed = require(laplacian_smoothing(require(node_neighbours(mesh)), set.points, options));
-  CHECK(differences(require(device.download_vertex_normals()), require(vertex_normals(mesh, smoothed))) == 0);
+  CHECK(differences(require(normals.normals.download()), require(vertex_normals(mesh, smoothed))) == 0);
 }
 
-TEST_CASE("smoothing on the device: λ out of range and passes that the mesh was not made for are errors") {
+TEST_CASE("results that are kept are written again without an allocation, for smaller meshes, too") {
+  Context& context = test::test_context();
+  DeviceVertexNormals normals;
+  const auto check = [&](const IndexedFaceSet& set) {
+    const HalfEdgeMesh mesh = test::half_edges(set);
+    run(mesh, set.points, [&](Recorder& recorder, DeviceMesh& device) {
+      return record_vertex_normals(recorder, device, normals);
+    });
+    CHECK(differences(require(normals.normals.download()), require(vertex_normals(mesh, set.points))) == 0);
+  };
+  check(test::icosphere(3));
+  const std::uint64_t memory = context.allocated_bytes(), address = normals.normals.buffer().address();
+  check(test::cube());
+  check(test::icosphere(3));
+  CHECK(context.allocated_bytes() == memory);
+  CHECK(normals.normals.buffer().address() == address);
+  check(test::icosphere(4));
+  CHECK(context.allocated_bytes() > memory);
+}
+
+TEST_CASE("passes on the device: options out of range, and what was made for another mesh, are errors") {
   const IndexedFaceSet set = test::cube();
-  DeviceMesh device = require(
-      DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, {.vertex_normals = true}));
-  Recorder recorder = require(Recorder::create(test::test_context()));
-  CHECK(record_laplacian_smoothing(recorder, device, {}).error().code == ErrorCode::kUsage);
-  CHECK(record_dihedral_angles(recorder, device).error().code == ErrorCode::kUsage);
-  CHECK(record_curvatures(recorder, device).error().code == ErrorCode::kUsage);
-  CHECK(record_surface_measures(recorder, device).error().code == ErrorCode::kUsage);
-  CHECK(record_triangle_normals(recorder, device).error().code == ErrorCode::kUsage);
-  CHECK(record_collapse_costs(recorder, device, {}).error().code == ErrorCode::kUsage);
-  CHECK(record_swap_scores(recorder, device).error().code == ErrorCode::kUsage);
-  CHECK(record_volume(recorder, device).error().code == ErrorCode::kUsage);
-  CHECK(record_restore_volume(recorder, device).error().code == ErrorCode::kUsage);
-  const NearbyFaces nearby = require(NearbyFaces::create(test::test_context(), test::half_edges(set),
-                                                         set.points, {.spatial = 0.5f, .influence = 0.1f}));
-  CHECK(record_bilateral_smoothing(recorder, device, nearby).error().code == ErrorCode::kUsage);
-  CHECK(device.download_triangle_normals().error().code == ErrorCode::kUsage);
-  DeviceMesh all =
-      require(DeviceMesh::create(test::test_context(), test::half_edges(set), set.points, kAllPasses));
-  CHECK(record_laplacian_smoothing(recorder, all, {.lambda = 1.5f}).error().code == ErrorCode::kUsage);
-  CHECK(record_laplacian_smoothing(recorder, all, {.mu = 0.5f}).error().code == ErrorCode::kUsage);
-  CHECK(record_collapse_costs(recorder, all, {.scale = 0.0f}).error().code == ErrorCode::kUsage);
-  const NearbyFaces of_another =
-      require(NearbyFaces::create(test::test_context(), test::half_edges(test::tetrahedron()),
-                                  test::tetrahedron().points, {.spatial = 0.5f, .influence = 0.1f}));
-  CHECK(record_bilateral_smoothing(recorder, all, of_another).error().code == ErrorCode::kUsage);
+  const HalfEdgeMesh mesh = test::half_edges(set);
+  Context& context = test::test_context();
+  DeviceMesh device = require(DeviceMesh::create(context, mesh, set.points));
+  Recorder recorder = require(Recorder::create(context));
+  const auto is_usage = [](const Result<void>& result) {
+    return !result && result.error().code == ErrorCode::kUsage;
+  };
+  DeviceSmoothing smoothing;
+  CHECK(is_usage(record_laplacian_smoothing(recorder, device, smoothing, {.lambda = 1.5f})));
+  CHECK(is_usage(record_laplacian_smoothing(recorder, device, smoothing, {.mu = 0.5f})));
   const std::vector<std::uint32_t> locks(1, 0u), too_many(2, 0u);
-  CHECK(record_laplacian_smoothing(recorder, all, {.locked = locks}).error().code == ErrorCode::kUsage);
-  CHECK(all.upload_locks(too_many).error().code == ErrorCode::kUsage);
-  CHECK(device.upload_locks(locks).error().code == ErrorCode::kUsage);
-  CHECK(all.upload_locks(locks));
+  CHECK(is_usage(record_laplacian_smoothing(recorder, device, smoothing, {.locked = locks})));
+  require_done(smoothing.locked.upload(context, too_many));
+  CHECK(is_usage(record_laplacian_smoothing(recorder, device, smoothing)));
+  DeviceCollapseCosts costs;
+  CHECK(is_usage(record_collapse_costs(recorder, device, costs, {.scale = 0.0f})));
+  NearbyFaces of_another =
+      require(NearbyFaces::create(context, test::half_edges(test::tetrahedron()), test::tetrahedron().points,
+                                  {.spatial = 0.5f, .influence = 0.1f}));
+  CHECK(is_usage(record_bilateral_smoothing(recorder, device, of_another)));
+  DeviceSurfaceMeasures never_measured, after;
+  CHECK(is_usage(record_restore_volume(recorder, device, never_measured, after)));
+  CHECK(is_usage(DeviceMesh::create(context, mesh, std::vector<Vec3>(7)).map([](const DeviceMesh&) {})));
 }

@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include <vulkan/vulkan_core.h>
 
@@ -27,7 +25,7 @@ class Buffer {
   /// Errors: kOutOfMemory, which says how many bytes were asked for and how many this context holds.
   [[nodiscard]] static Result<Buffer> create(Context& context, std::uint64_t bytes,
                                              BufferMemory memory = BufferMemory::kDevice,
-                                             const std::string& name = {});
+                                             const char* name = "");
 
   Buffer() = default;
   Buffer(Buffer&& other) noexcept;
@@ -37,6 +35,7 @@ class Buffer {
   [[nodiscard]] std::uint64_t size() const { return size_; }  ///< Bytes, as asked for.
   [[nodiscard]] std::uint64_t address() const { return address_; }
   [[nodiscard]] VkBuffer vk_buffer() const { return buffer_; }
+  [[nodiscard]] const Context* context() const { return context_; }  ///< Null where it is empty.
   /// The host's view of the memory; empty where it has none. After writing call flush(), before reading
   /// invalidate().
   [[nodiscard]] std::span<std::byte> mapped() const { return {mapped_, mapped_ == nullptr ? 0 : size_}; }
@@ -48,16 +47,6 @@ class Buffer {
   /// for a range outside the buffer; kOutOfMemory; kNoDevice.
   [[nodiscard]] Result<void> upload(std::span<const std::byte> data, std::uint64_t offset = 0);
   [[nodiscard]] Result<void> download(std::span<std::byte> data, std::uint64_t offset = 0) const;
-
-  /// The whole buffer as values of T.
-  template <class T>
-  [[nodiscard]] Result<void> upload_values(std::span<const T> values) {
-    return upload(std::as_bytes(values));
-  }
-  template <class T>
-  [[nodiscard]] Result<void> download_values(std::span<T> values) const {
-    return download(std::as_writable_bytes(values));
-  }
 
  private:
   void destroy() noexcept;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include <vulkan/vulkan_core.h>
 
@@ -17,7 +16,7 @@ namespace vkmesh {
 /// `count`, then what it likes, buffer addresses above all. It runs a thread for each element in [first,
 /// first + count), in workgroups of one dimension.
 struct KernelSource {
-  std::string_view name;
+  const char* name = "";
   std::span<const std::uint32_t> spirv;  ///< Must stay where it is while the context lives.
 };
 

@@ -5,11 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include <vulkan/vulkan_core.h>
@@ -34,9 +32,10 @@ struct RecorderCounts {
   std::uint32_t barriers = 0;  ///< Between pieces of work; the one that closes a submission is not counted.
 };
 
-/// Records kernels and copies in the order of the calls. Each says which buffers it reads and writes; where
-/// one touches what an earlier one wrote, or writes what an earlier one read, a memory barrier goes between
-/// them, and nowhere else. Buffers must live until the work has run. One thread at a time.
+/// Records kernels (see dispatch.h) and copies in the order of the calls. Each says which buffers it reads
+/// and writes; where one touches what an earlier one wrote, or writes what an earlier one read, a memory
+/// barrier goes between them, and nowhere else. Buffers must live until the work has run. One thread at a
+/// time.
 class Recorder {
  public:
   /// Into a command buffer of its own, to be run by submit_and_wait(). Errors: kOutOfMemory, kNoDevice.
@@ -45,8 +44,7 @@ class Recorder {
   /// Into the caller's command buffer, which must be recording, outside a render pass, for the context's
   /// queue family. The caller submits it, and places what barriers are needed against its own work before and
   /// after: the recorder's is done in the stages COMPUTE_SHADER and TRANSFER, and for drawing in those of a
-  /// graphics pipeline. No time-stamps. Errors: kUsage
-  /// for a null handle.
+  /// graphics pipeline. No time-stamps. Errors: kUsage for a null handle.
   [[nodiscard]] static Result<Recorder> into(Context& context, VkCommandBuffer command_buffer);
 
   /// Waits (at most as long as the last wait) for work that still runs.
@@ -55,19 +53,6 @@ class Recorder {
   Recorder& operator=(Recorder&&) noexcept;
 
   [[nodiscard]] Context& context() const;
-
-  /// Runs the kernel for `threads` elements, from element 0. `push_constants` is the struct shared with the
-  /// shader; its `first` and `count` are filled here, for each part of work that is split. Errors: kUsage for
-  /// push constants of another size, or after submit_and_wait().
-  template <class Params>
-  [[nodiscard]] Result<void> dispatch(const Kernel& kernel, const Params& push_constants,
-                                      std::uint64_t threads, std::initializer_list<const Buffer*> reads,
-                                      std::initializer_list<const Buffer*> writes) {
-    static_assert(std::is_trivially_copyable_v<Params> && std::is_standard_layout_v<Params>);
-    static_assert(offsetof(Params, first) == 0 && offsetof(Params, count) == 4);
-    return dispatch_bytes(kernel, std::as_bytes(std::span(&push_constants, 1)), threads,
-                          std::span(reads.begin(), reads.size()), std::span(writes.begin(), writes.size()));
-  }
 
   /// Copies `bytes` bytes. Errors: kUsage for ranges outside the buffers, or after submit_and_wait().
   [[nodiscard]] Result<void> copy(const Buffer& from, const Buffer& to, std::uint64_t bytes,
@@ -101,9 +86,11 @@ class Recorder {
  private:
   struct State;
   explicit Recorder(std::unique_ptr<State> state);
-  [[nodiscard]] Result<void> dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push_constants,
-                                            std::uint64_t threads, std::span<const Buffer* const> reads,
-                                            std::span<const Buffer* const> writes);
+  template <class Params>
+  friend class Dispatch;
+  [[nodiscard]] Result<void> dispatch(const KernelSource& source, std::span<const std::byte> push_constants,
+                                      std::uint64_t threads, std::span<const Buffer* const> reads,
+                                      std::span<const Buffer* const> writes);
 
   std::unique_ptr<State> state_;
 };

@@ -80,10 +80,9 @@ struct DrawGeometry {
   std::vector<DrawEdges> edges;  ///< Drawn over it, in this order.
 };
 
-/// A mesh that is on the device already. Normals are those that record_vertex_normals() left, where the mesh
-/// was made for that pass; values the largest dihedral angles around each point, where it was made for those.
-/// Errors: kUsage where the mesh has no corners on the device, which each of these passes brings.
-[[nodiscard]] Result<DrawGeometry> geometry_of(const DeviceMesh& mesh);
+/// The triangles of a mesh that is on the device already. Normals and values of passes are added by the
+/// caller: `geometry.normals = &result.normals.buffer()`. Errors: kOutOfMemory, kNoDevice.
+[[nodiscard]] Result<DrawGeometry> geometry_of(DeviceMesh& mesh);
 
 /// Records a picture of the geometry: clears the target to the background, draws, and copies the picture to
 /// where RenderTarget::download() finds it. All of it must live until the work has run. Face sets are drawn
@@ -92,8 +91,6 @@ struct DrawGeometry {
 /// are not there, or splats without spacing; kUnsuitable for more elements than a draw call counts; kNoDevice
 /// where the queue does not draw; kOutOfMemory.
 [[nodiscard]] Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const Camera& camera,
-                                       const DrawStyle& style, RenderTarget& target);
-[[nodiscard]] Result<void> record_draw(Recorder& recorder, const DeviceMesh& mesh, const Camera& camera,
                                        const DrawStyle& style, RenderTarget& target);
 
 /// What a DrawMesh holds beside the triangles. Spans may be empty.

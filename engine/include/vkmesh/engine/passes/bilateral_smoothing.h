@@ -5,46 +5,43 @@
 #include <span>
 
 #include <vkmesh/base/result.h>
-#include <vkmesh/engine/core/buffer.h>
+#include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 #include <vkmesh/passes/bilateral_smoothing.h>
 
 namespace vkmesh {
 
-/// For each vertex the faces that lie near it, found by the host for given positions and widths; in device
-/// memory, with room for what the pass computes of them on the way.
-class NearbyFaces {
- public:
+/// The faces that lie near each vertex, found by the host for given positions and widths, in device memory;
+/// and the scratch of record_bilateral_smoothing().
+struct NearbyFaces {
   /// O(n log n). Errors: as bilateral_smoothing(); kUnsuitable where more faces than DeviceInfo::loop_rounds
   /// lie near a vertex; kOutOfMemory; kNoDevice.
   [[nodiscard]] static Result<NearbyFaces> create(Context& context, const HalfEdgeMesh& mesh,
                                                   std::span<const Vec3> positions,
                                                   const BilateralSmoothingOptions& options);
 
-  /// The faces, of which the mesh must have as many, and the vertices that they meet.
-  [[nodiscard]] std::uint32_t face_count() const { return faces_; }
-  [[nodiscard]] std::uint32_t vertex_count() const { return vertices_; }
-
- private:
-  friend Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh,
-                                                 const NearbyFaces& nearby);
-  /// The faces in cells at most one or two away from each cell of vertices, as ranges of places.
+  /// Ranges of places in `face_order`: cell c's are those from offsets[c] to offsets[c + 1], two places each.
   struct Ranges {
-    Buffer offsets, ends;
+    DeviceArray<std::uint32_t> offsets, ends;
   };
 
-  BilateralSmoothingOptions options_;
-  std::uint32_t faces_ = 0, vertices_ = 0, vertices_of_mesh_ = 0;
-  Buffer face_order_, vertex_order_, cells_, centroids_and_areas_, normals_, mollified_;
-  Ranges near_, far_;
+  BilateralSmoothingOptions options;
+  std::uint32_t mesh_vertices = 0;
+  DeviceArray<std::uint32_t> face_order;    ///< The face at each place of the grid.
+  DeviceArray<std::uint32_t> vertex_order;  ///< The vertex at each place; only those that faces meet.
+  DeviceArray<std::uint32_t> cells;         ///< The cell of each of these.
+  Ranges near, far;                         ///< Faces in cells at most one, and at most two, cells away.
+
+  DeviceArray<float> centroids_and_areas;  ///< Scratch.
+  DeviceArray<Vec3> normals, mollified;    ///< Scratch.
 };
 
 /// Records the pass of which vkmesh::bilateral_smoothing() is the reference, equal to it bit for bit where
 /// the mesh's positions, when the work runs, are those that `nearby` was made of; the result takes their
-/// place. O(vertices × faces within some 3 σ_f). Errors: kUsage unless the mesh was made for this pass and
-/// `nearby` for this mesh.
+/// place. O(vertices × faces within some 3 σ_f). Errors: kUsage unless `nearby` was made for this mesh;
+/// kOutOfMemory, kNoDevice.
 [[nodiscard]] Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh,
-                                                      const NearbyFaces& nearby);
+                                                      NearbyFaces& nearby);
 
 }  // namespace vkmesh

@@ -2,15 +2,23 @@
 #pragma once
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 #include <vkmesh/passes/dihedral_angles.h>
 
 namespace vkmesh {
 
-/// Records the pass of which vkmesh::dihedral_angles() is the reference, equal to it bit for bit; the results
-/// are read by DeviceMesh::download_half_edge_angles() and download_vertex_maxima(). O(half-edges). Errors:
-/// kUsage unless the mesh was made for this pass.
-[[nodiscard]] Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh);
+/// Results and scratch of record_dihedral_angles(), kept by the caller for as long as it likes.
+struct DeviceDihedralAngles {
+  DeviceArray<float> half_edge;       ///< As DihedralAngles::half_edge.
+  DeviceArray<float> vertex_maximum;  ///< As DihedralAngles::vertex_maximum.
+  DeviceArray<Vec3> normals;          ///< Scratch.
+};
+
+/// Records the pass of which vkmesh::dihedral_angles() is the reference, equal to it bit for bit.
+/// O(half-edges). Errors: as DeviceMesh::corner_offsets().
+[[nodiscard]] Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh,
+                                                  DeviceDihedralAngles& result);
 
 }  // namespace vkmesh

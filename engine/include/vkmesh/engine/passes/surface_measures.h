@@ -2,15 +2,25 @@
 #pragma once
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 #include <vkmesh/passes/surface_measures.h>
 
 namespace vkmesh {
 
-/// Records the pass of which vkmesh::surface_measures() is the reference, equal to it bit for bit; the result
-/// is read by DeviceMesh::download_surface_measures(). O(faces). Errors: kUsage unless the mesh was made for
-/// this pass.
-[[nodiscard]] Result<void> record_surface_measures(Recorder& recorder, DeviceMesh& mesh);
+/// Result and scratch of record_surface_measures(), kept by the caller for as long as it likes.
+struct DeviceSurfaceMeasures {
+  DeviceArray<RawMeasures> raw;                    ///< One.
+  DeviceArray<float> block_sums, more_block_sums;  ///< Scratch.
+
+  /// The measures, once the work has run. Errors: kOutOfMemory, kNoDevice.
+  [[nodiscard]] Result<SurfaceMeasures> download() const;
+};
+
+/// Records the pass of which vkmesh::surface_measures() is the reference, equal to it bit for bit. O(faces).
+/// Errors: kOutOfMemory, kNoDevice.
+[[nodiscard]] Result<void> record_surface_measures(Recorder& recorder, DeviceMesh& mesh,
+                                                   DeviceSurfaceMeasures& result);
 
 }  // namespace vkmesh

@@ -2,15 +2,16 @@
 #pragma once
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 #include <vkmesh/passes/triangle_normals.h>
 
 namespace vkmesh {
 
-/// Records the pass of which vkmesh::triangle_normals() is the reference, equal to it bit for bit; the result
-/// is read by DeviceMesh::download_triangle_normals(). O(faces). Errors: kUsage unless the mesh was made for
-/// this pass.
-[[nodiscard]] Result<void> record_triangle_normals(Recorder& recorder, DeviceMesh& mesh);
+/// Records the pass of which vkmesh::triangle_normals() is the reference, equal to it bit for bit: one vector
+/// a face. O(faces). Errors: kOutOfMemory, kNoDevice.
+[[nodiscard]] Result<void> record_triangle_normals(Recorder& recorder, DeviceMesh& mesh,
+                                                   DeviceArray<Vec3>& normals);
 
 }  // namespace vkmesh

@@ -2,16 +2,23 @@
 #pragma once
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
 #include <vkmesh/passes/vertex_normals.h>
 
 namespace vkmesh {
 
-/// Records the pass of which vkmesh::vertex_normals() is the reference, equal to it bit for bit; the result
-/// is read by DeviceMesh::download_vertex_normals(). O(half-edges). Errors: kUsage unless the mesh was made
-/// for this pass.
+/// Result and scratch of record_vertex_normals(), kept by the caller for as long as it likes.
+struct DeviceVertexNormals {
+  DeviceArray<Vec3> normals;       ///< One a vertex.
+  DeviceArray<Vec3> face_vectors;  ///< Scratch.
+};
+
+/// Records the pass of which vkmesh::vertex_normals() is the reference, equal to it bit for bit.
+/// O(half-edges). Errors: as DeviceMesh::corner_offsets().
 [[nodiscard]] Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh,
+                                                 DeviceVertexNormals& result,
                                                  const VertexNormalsOptions& options = {});
 
 }  // namespace vkmesh
