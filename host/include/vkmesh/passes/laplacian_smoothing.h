@@ -38,8 +38,8 @@ struct LaplacianSmoothingOptions {
   /// (G. Taubin, "A signal processing approach to fair surface design", 1995): μ a little beyond −λ, such as
   /// −0.53 for λ = 0.5. Default 0.
   float mu = 0.0f;
-  /// Bit v % 32 of word v / 32: vertex v stays. Empty: none. On a device DeviceMesh::upload_locks() takes
-  /// this instead.
+  /// Bit v % 32 of word v / 32: vertex v stays. Empty: none. On a device DeviceSmoothing::locked takes this
+  /// instead.
   std::span<const std::uint32_t> locked = {};
 };
 
