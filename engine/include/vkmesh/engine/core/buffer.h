@@ -1,4 +1,4 @@
-// Memory of a device, found by address.
+// Buffers in device memory, found by address.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,11 @@ enum class BufferMemory {
   kReadback,  ///< Copied to, read by the host.
 };
 
-/// A range of device memory with an address that kernels take. Moves, does not copy. Empty when default-made.
+/// Range of device memory with an address that kernels take. Movable, not copyable. Empty when default-made.
 class Buffer {
  public:
-  /// `bytes` may be 0. `name` is shown by debuggers and validation. The content is undefined.
+  /// Allocates `bytes` bytes, which may be 0; their content is undefined. `name` is shown by debuggers and
+  /// validation.
   /// Errors: kOutOfMemory, which says how many bytes were asked for and how many this context holds.
   [[nodiscard]] static Result<Buffer> create(Context& context, std::uint64_t bytes,
                                              BufferMemory memory = BufferMemory::kDevice,
@@ -35,7 +36,7 @@ class Buffer {
   [[nodiscard]] std::uint64_t size() const { return size_; }  ///< Bytes, as asked for.
   [[nodiscard]] std::uint64_t address() const { return address_; }
   [[nodiscard]] VkBuffer vk_buffer() const { return buffer_; }
-  [[nodiscard]] const Context* context() const { return context_; }  ///< Null where it is empty.
+  [[nodiscard]] const Context* context() const { return context_; }  ///< Null when empty.
   /// The host's view of the memory; empty where it has none. After writing call flush(), before reading
   /// invalidate().
   [[nodiscard]] std::span<std::byte> mapped() const { return {mapped_, mapped_ == nullptr ? 0 : size_}; }

@@ -1,4 +1,4 @@
-// A Vulkan device, and all that the engine makes once for it.
+// Vulkan devices: those that there are, and one in use.
 #pragma once
 
 #include <cstdint>
@@ -20,27 +20,28 @@ class Device;
 
 enum class DeviceType { kDiscreteGpu, kIntegratedGpu, kVirtualGpu, kSoftware, kOther };
 
-/// "discrete", "integrated", "virtual", "software", "other".
+/// Name of a type: "discrete", "integrated", "virtual", "software", "other".
 [[nodiscard]] std::string name_of(DeviceType type);
 
 /// A device that Vulkan offers.
 struct DeviceInfo {
-  std::uint32_t index = 0;  ///< What ContextOptions::device takes as a number.
+  std::uint32_t index = 0;  ///< Number that ContextOptions::device takes.
   std::string name;         ///< "llvmpipe (LLVM 15.0.6, 256 bits)".
   std::string driver;       ///< "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".
   DeviceType type = DeviceType::kOther;
   std::string api_version;   ///< "1.3.230".
   std::uint64_t memory = 0;  ///< Bytes of device-local memory.
-  /// A thread leaves all its loops after so many rounds of them together: 65535 on Mesa's llvmpipe.
+  /// Rounds after which a thread leaves all its loops, counted over all of them: 65535 on Mesa's llvmpipe.
   std::uint64_t loop_rounds = UINT64_MAX;
-  bool usable = false;   ///< It has what the engine requires.
-  std::string rejected;  ///< Why not, where `usable` is false.
+  bool usable = false;   ///< Has what the engine requires.
+  std::string rejected;  ///< Reason, where `usable` is false.
 };
 
 struct ContextOptions {
-  /// "auto": the first usable of discrete, integrated, virtual GPUs, never a software device. "2": by index.
-  /// Anything else: the first usable device whose name holds these letters, whatever their case ("llvmpipe").
-  /// Default "auto".
+  /// Device to open. "auto" (default): the first usable of discrete, integrated, virtual GPUs, never a
+  /// software device. "2": by index. Anything else: the first usable device whose name contains it, whatever
+  /// the case
+  /// ("llvmpipe").
   std::string device = "auto";
   /// Turns on the Khronos validation layer with synchronization validation. Default false.
   bool validation = false;
@@ -48,25 +49,26 @@ struct ContextOptions {
   bool gpu_assisted_validation = false;
   /// Called with each validation message, on any thread that calls Vulkan; they are also kept in the context.
   std::function<void(const std::string&)> on_validation_message;
-  /// Does without the check that the device's arithmetic equals the host's bit by bit. Default false.
+  /// Skips the check that the device's arithmetic equals the host's bit by bit. Default false.
   bool skip_exactness_check = false;
   /// Moves data through staging buffers even where the host could write the device's memory. Default false.
   bool force_staging = false;
   /// Bytes of a staging buffer; more data goes in several rounds. Default 32 MiB.
   std::uint64_t staging_bytes = std::uint64_t{32} << 20;
-  /// Threads of one dispatch at the most; longer work is split, so that no watchdog stops it. Default 4 Mi.
+  /// Largest number of threads of one dispatch; longer work is split, so that no watchdog stops it. Default
+  /// 4 Mi.
   std::uint32_t max_threads_per_dispatch = std::uint32_t{1} << 22;
-  /// The Vulkan loader's entry point. Default: that of the system's loader, opened at run time.
+  /// Entry point of the Vulkan loader. Default: that of the system's loader, opened at run time.
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
 };
 
-/// A device of the caller's: the engine uses it and destroys none of it. It must have been created with what
+/// Device of the caller's, which the engine uses and never destroys. It must have been created with what
 /// required_api_version(), required_features() and required_extensions() name, and outlive the context.
 struct AdoptedDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;  ///< Of a family that can compute.
+  VkQueue queue = VK_NULL_HANDLE;  ///< Its family must support compute.
   std::uint32_t queue_family = 0;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   /// Called around each use of the queue, for callers that use it from other threads. Both or neither.
@@ -74,14 +76,14 @@ struct AdoptedDevice {
   std::function<void()> unlock_queue;
 };
 
-/// VK_API_VERSION_1_2.
+/// Returns VK_API_VERSION_1_2.
 [[nodiscard]] std::uint32_t required_api_version();
-/// What must be enabled of Vulkan 1.2: bufferDeviceAddress. `pNext` is null.
+/// Features of Vulkan 1.2 that must be enabled: bufferDeviceAddress. `pNext` is null.
 [[nodiscard]] VkPhysicalDeviceVulkan12Features required_features();
 /// Names of required device extensions: none today.
 [[nodiscard]] std::span<const char* const> required_extensions();
 
-/// Every device of the machine, usable or not, in the loader's order. An empty list where there is none.
+/// Lists every device of the machine, usable or not, in the loader's order.
 /// Errors: kNoDevice when there is no Vulkan loader, or no instance can be made.
 [[nodiscard]] Result<std::vector<DeviceInfo>> list_devices(const ContextOptions& options = {});
 
@@ -95,9 +97,8 @@ class Context {
   /// layer of `validation` missing, arithmetic that differs from the host's), kOutOfMemory.
   [[nodiscard]] static Result<std::unique_ptr<Context>> create(const ContextOptions& options = {});
 
-  /// Works on the caller's device. Of the options, those on validation and the choice of device are not
-  /// looked at. Errors: kUsage for a missing handle; kNoDevice where the device lacks what is required or
-  /// computes otherwise.
+  /// Works on the caller's device. Options on validation and on the choice of a device are ignored. Errors:
+  /// kUsage for a missing handle; kNoDevice where the device lacks what is required or computes otherwise.
   [[nodiscard]] static Result<std::unique_ptr<Context>> adopt(const AdoptedDevice& adopted,
                                                               const ContextOptions& options = {});
 
@@ -111,7 +112,7 @@ class Context {
   /// Takes the validation messages gathered since the last call.
   [[nodiscard]] std::vector<std::string> take_validation_messages();
 
-  /// For the engine's own sources.
+  /// Internal: for the engine's own sources.
   [[nodiscard]] detail::Device& device() { return *device_; }
 
  private:

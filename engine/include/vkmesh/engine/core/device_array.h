@@ -20,7 +20,7 @@ struct DeviceAddress {
 };
 
 /// Array of T in device memory. Empty when default-made. It keeps its memory while that suffices: results and
-/// scratch that a caller keeps from frame to frame cost no allocation. Moves, does not copy.
+/// scratch that a caller keeps from frame to frame cost no allocation. Movable, not copyable.
 template <class T>
 class DeviceArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -48,7 +48,7 @@ class DeviceArray {
     return uploaded;
   }
 
-  /// The values, once the work that writes them has run. O(size). Errors: kOutOfMemory, kNoDevice.
+  /// Downloads the values, once the work that writes them has run. O(size). Errors: kOutOfMemory, kNoDevice.
   [[nodiscard]] Result<std::vector<T>> download() const {
     return detail::catching([&]() -> Result<std::vector<T>> {
       std::vector<T> values(size_);
@@ -59,7 +59,7 @@ class DeviceArray {
 
   [[nodiscard]] std::size_t size() const { return size_; }  ///< Values.
   [[nodiscard]] const Buffer& buffer() const { return buffer_; }
-  /// Whether resize() or upload() made it in this context, if only for no values.
+  /// Tells whether resize() or upload() made it in this context, if only for no values.
   [[nodiscard]] bool exists_in(const Context& context) const { return buffer_.context() == &context; }
 
  private:

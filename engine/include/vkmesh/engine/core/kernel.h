@@ -1,4 +1,4 @@
-// A compute shader, ready to run.
+// Compute shaders, and the pipelines made of them.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 namespace vkmesh {
 
 /// SPIR-V of a compute shader that takes all its data by push constants: first two 32-bit counts `first` and
-/// `count`, then what it likes, buffer addresses above all. It runs a thread for each element in [first,
-/// first + count), in workgroups of one dimension.
+/// `count`, then buffer addresses and numbers. It runs one thread for each element in [first, first + count),
+/// in workgroups of one dimension.
 struct KernelSource {
   const char* name = "";
   std::span<const std::uint32_t> spirv;  ///< Must stay where it is while the context lives.
 };
 
-/// A compute pipeline. Made once for a context, which keeps it.
+/// Compute pipeline, made once for a context, which keeps it.
 class Kernel {
  public:
-  /// The kernel of that name, made at the first call. May be called from several threads.
+  /// Returns the kernel of that name, made by the first call. May be called from several threads.
   /// Where the device offers it, the SPIR-V is made to ask for rounding to nearest even and for signed zeros,
   /// infinities and NaNs to be kept (VK_KHR_shader_float_controls, core in Vulkan 1.2).
   /// Errors: kUsage for SPIR-V that is no such shader; kOutOfMemory.
@@ -32,7 +32,7 @@ class Kernel {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] VkPipeline pipeline() const { return pipeline_; }
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
-  /// A multiple of 8: the size of the shader's struct, and of the one that C++ fills.
+  /// Size of the struct of push constants, rounded up to a multiple of 8.
   [[nodiscard]] std::uint32_t push_constant_bytes() const { return push_constant_bytes_; }
   [[nodiscard]] std::uint32_t workgroup_size() const { return workgroup_size_; }
 

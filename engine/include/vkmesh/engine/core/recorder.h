@@ -1,4 +1,4 @@
-// Work for a device, recorded and then run at once.
+// Recorders of work for a device.
 #pragma once
 
 #include <chrono>
@@ -19,13 +19,13 @@
 
 namespace vkmesh {
 
-/// The device's time for a section of the work.
+/// Device time of a section of the work.
 struct SectionTime {
   std::string name;
   double milliseconds = 0.0;
 };
 
-/// What a recorder has recorded so far.
+/// Counts of what a recorder has recorded so far.
 struct RecorderCounts {
   std::uint32_t dispatches = 0;  ///< vkCmdDispatch calls: split work counts each part.
   std::uint32_t copies = 0;
@@ -38,13 +38,14 @@ struct RecorderCounts {
 /// time.
 class Recorder {
  public:
-  /// Into a command buffer of its own, to be run by submit_and_wait(). Errors: kOutOfMemory, kNoDevice.
+  /// Records into a command buffer of its own, to be run by submit_and_wait(). Errors: kOutOfMemory,
+  /// kNoDevice.
   [[nodiscard]] static Result<Recorder> create(Context& context);
 
-  /// Into the caller's command buffer, which must be recording, outside a render pass, for the context's
-  /// queue family. The caller submits it, and places what barriers are needed against its own work before and
-  /// after: the recorder's is done in the stages COMPUTE_SHADER and TRANSFER, and for drawing in those of a
-  /// graphics pipeline. No time-stamps. Errors: kUsage for a null handle.
+  /// Records into the caller's command buffer, which must be recording, outside a render pass, for the
+  /// context's queue family. The caller submits it, and places the barriers against its own work before and
+  /// after: the recorder's work runs in the stages COMPUTE_SHADER and TRANSFER, and drawing in those of a
+  /// graphics pipeline. Sections are not timed. Errors: kUsage for a null handle.
   [[nodiscard]] static Result<Recorder> into(Context& context, VkCommandBuffer command_buffer);
 
   /// Waits (at most as long as the last wait) for work that still runs.
@@ -69,17 +70,18 @@ class Recorder {
                                       std::span<const Buffer* const> reads,
                                       std::span<const Buffer* const> writes);
 
-  /// Starts a section whose time section_times() will tell; it ends where the next one starts, or with the
-  /// work. At most 64 sections; further ones, and all of them on a device without time-stamps, are not timed.
+  /// Starts a section, whose time section_times() tells; it ends where the next one starts, or with the work.
+  /// At most 64 sections; further ones, and all of them on a device without time-stamps, are not timed.
   void begin_section(const std::string& name);
 
-  /// Runs what was recorded, and waits until it is done or the time is up. Once for each recorder.
+  /// Runs what was recorded, and waits until it is done or the time is up. To be called once.
   /// Errors: kNoDevice for a device that was lost or did not finish in time (wait() goes on waiting);
   /// kOutOfMemory; kUsage for a second call, or on the caller's command buffer.
   [[nodiscard]] Result<void> submit_and_wait(std::chrono::nanoseconds timeout = std::chrono::seconds(60));
   [[nodiscard]] Result<void> wait(std::chrono::nanoseconds timeout);
 
-  /// In order of recording; empty before the work is done, or where the device has no time-stamps.
+  /// Times of the sections, in order of recording; empty before the work is done, or where the device has no
+  /// time-stamps.
   [[nodiscard]] std::vector<SectionTime> section_times() const;
   [[nodiscard]] RecorderCounts counts() const;
 

@@ -35,7 +35,7 @@ enum class DrawColors {
   kDirect,  ///< Values are colours.
 };
 
-/// Whose the values are.
+/// Elements that values belong to.
 enum class DrawElement { kPoint, kCorner, kFace };
 
 struct DrawStyle {
@@ -48,7 +48,7 @@ struct DrawStyle {
   Color none{150, 150, 150};  ///< Elements whose value is kNoValue.
   bool show_flipped = false;  ///< Paints back faces in `flipped`.
   Color flipped{230, 0, 160};
-  Color edge{40, 44, 52};    ///< Of the polygons' edges.
+  Color edge{40, 44, 52};    ///< Colour of the polygons' edges.
   float edge_width = 1.0f;   ///< Pixels.
   float point_size = 3.0f;   ///< Pixels across a dot.
   float splat_scale = 0.8f;  ///< Radius of a splat as a multiple of the spacing around its point.
@@ -65,7 +65,7 @@ struct DrawEdges {
   float width = 3.0f;  ///< Pixels.
 };
 
-/// What is drawn, in device memory. Buffers are borrowed; those that are null are not there.
+/// Geometry in device memory, to be drawn. Buffers are borrowed; null where there is none.
 struct DrawGeometry {
   const Buffer* positions = nullptr;     ///< 3 floats a point.
   const Buffer* corners = nullptr;       ///< 3 points a triangle. Null: each three positions are a triangle.
@@ -74,13 +74,13 @@ struct DrawGeometry {
   const Buffer* hidden_edges = nullptr;  ///< For each triangle: bit i is set where the edge from its corner i
                                          ///< to the next is none of the polygon.
   const Buffer* spacing = nullptr;       ///< A float a point: the radius of its splat, before splat_scale.
-  DrawElement element = DrawElement::kPoint;  ///< Of `values`.
+  DrawElement element = DrawElement::kPoint;  ///< Elements that `values` belong to.
   std::uint32_t points = 0;
   std::uint32_t triangles = 0;
   std::vector<DrawEdges> edges;  ///< Drawn over it, in this order.
 };
 
-/// The triangles of a mesh that is on the device already. Normals and values of passes are added by the
+/// Triangles of a mesh that is on the device already. Normals and values of passes are added by the
 /// caller: `geometry.normals = &result.normals.buffer()`. Errors: kOutOfMemory, kNoDevice.
 [[nodiscard]] Result<DrawGeometry> geometry_of(DeviceMesh& mesh);
 
@@ -93,7 +93,7 @@ struct DrawGeometry {
 [[nodiscard]] Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const Camera& camera,
                                        const DrawStyle& style, RenderTarget& target);
 
-/// What a DrawMesh holds beside the triangles. Spans may be empty.
+/// Data that a DrawMesh holds beside the triangles. Spans may be empty.
 struct DrawMeshData {
   std::span<const Vec3> normals{};  ///< A point each.
   std::span<const float> values{};  ///< An element each. Values that are not finite become kNoValue.
@@ -109,19 +109,19 @@ struct DrawMeshData {
   std::vector<Edges> edges{};
 };
 
-/// Any mesh, uploaded for drawing: it need not be manifold, nor have faces. Moves, does not copy.
+/// Mesh of any kind, uploaded for drawing: it need not be manifold, nor have faces. Movable, not copyable.
 class DrawMesh {
  public:
-  /// Errors: kUnsuitable for a position that is not finite (the first is named) or polygons that are no
-  /// triangles; kUsage for corners that name no point, or data of another size; kOutOfMemory; kNoDevice.
-  /// O(n).
+  /// Uploads triangles. Errors: kUnsuitable for a position that is not finite (the first is named) or
+  /// polygons that are no triangles; kUsage for corners that name no point, or data of another size;
+  /// kOutOfMemory; kNoDevice. O(n).
   [[nodiscard]] static Result<DrawMesh> create(Context& context, const IndexedFaceSet& triangles,
                                                const DrawMeshData& data = {});
-  /// The triangles of a soup, without corners: there is a point for each corner of a triangle.
+  /// Uploads the triangles of a soup, one point for each corner.
   [[nodiscard]] static Result<DrawMesh> create(Context& context, const PolygonSoup& soup,
                                                const DrawMeshData& data = {});
 
-  /// Valid while this object is neither moved nor destroyed.
+  /// Geometry that is valid while this object is neither moved nor destroyed.
   [[nodiscard]] DrawGeometry geometry() const;
 
  private:

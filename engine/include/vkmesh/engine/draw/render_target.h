@@ -1,4 +1,4 @@
-// What pictures are drawn into, without a window.
+// Targets that pictures are drawn into, without a window.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@
 namespace vkmesh {
 
 /// Images of one size: colour and depth with four samples a pixel, the resolved colour, and a buffer that the
-/// host reads. About 40 bytes a pixel. Moves, does not copy. Must live until the work that draws has run.
+/// host reads. About 40 bytes a pixel. Movable, not copyable. Must live until the work that draws has run.
 class RenderTarget {
  public:
-  /// Errors: kUsage for a side of 0 pixels or more than the device takes; kNoDevice where the device cannot
-  /// draw; kOutOfMemory.
+  /// Makes a target. Errors: kUsage for a side of 0 pixels or more than the device takes; kNoDevice where the
+  /// device cannot draw; kOutOfMemory.
   [[nodiscard]] static Result<RenderTarget> create(Context& context, std::uint32_t width,
                                                    std::uint32_t height);
 
@@ -28,16 +28,17 @@ class RenderTarget {
 
   [[nodiscard]] std::uint32_t width() const;
   [[nodiscard]] std::uint32_t height() const;
-  /// The picture in format R8G8B8A8_UNORM, sRGB-encoded, to sample or copy from: after record_draw() in the
-  /// layout TRANSFER_SRC_OPTIMAL.
+  /// Image of the picture in format R8G8B8A8_UNORM, sRGB-encoded, to sample or copy from: after record_draw()
+  /// in the layout TRANSFER_SRC_OPTIMAL.
   [[nodiscard]] VkImage image() const;
   [[nodiscard]] VkImageView image_view() const;
 
-  /// The picture that was drawn last, once that work has run. O(pixels). Errors: kOutOfMemory, kNoDevice.
+  /// Downloads the picture that was drawn last, once that work has run. O(pixels). Errors: kOutOfMemory,
+  /// kNoDevice.
   [[nodiscard]] Result<Picture> download() const;
 
   struct State;
-  /// For the engine's own sources.
+  /// Internal: for the engine's own sources.
   [[nodiscard]] State& state() const { return *state_; }
 
  private:
