@@ -34,7 +34,7 @@ void main() {
   precise float blend = c.x + c.y * (b.x - c.x);
   store_result(i, 13, blend);
   store_result(i, 14, reciprocal(float(i + 1)));
-  store_result(i, 15, float(i * 8388617u));
+  store_result(i, 15, float(i * VKMESH_CANARY_UINT_STEP));
   store_result(i, 16, arccosine(unit_vector(a).x));
   store_result(i, 17, exponential(a.y));
   store_result(i, 18, vector_length(b));

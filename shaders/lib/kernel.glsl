@@ -36,8 +36,9 @@ layout(local_size_x = 128) in;
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Pairs { Floats at[]; };
 
 // The values 2i and 2i + 1. Every buffer starts with a pair and ends with a whole one. (The parameter is no Pairs because
-// glslang, where it meets those before Floats, asks for descriptor indexing.)
-uvec2 load2(Floats values, uint i) { return uvec2(Pairs(values).at[i]); }
+// glslang, where it meets those before Floats, asks for descriptor indexing. An address of one type becomes one of another
+// by way of a uvec2 here and everywhere: SwiftShader crashes on a bitcast from pointer to pointer.)
+uvec2 load2(Floats values, uint i) { return uvec2(Pairs(uvec2(values)).at[i]); }
 
 // The values 3i to 3i + 2, which lie in two pairs.
 uvec3 load3_bits(Floats values, uint i) {
@@ -53,9 +54,9 @@ void store3(Floats values, uint i, vec3 v) { values.at[3 * i] = v.x; values.at[3
 uint[VKMESH_UNMASKED] load_list(Uints values, uint begin, uint end) {
   uint list[VKMESH_UNMASKED];
   const uint last = (max(end, 1u) - 1u) / 2;
-  uvec2 a = load2(Floats(values), min(begin / 2, last));
+  uvec2 a = load2(Floats(uvec2(values)), min(begin / 2, last));
   for (uint k = 0; k < VKMESH_UNMASKED; k += 2) {
-    const uvec2 b = load2(Floats(values), min((begin + k) / 2 + 1, last));
+    const uvec2 b = load2(Floats(uvec2(values)), min((begin + k) / 2 + 1, last));
     const uvec2 both = begin % 2 == 0 ? a : uvec2(a.y, b.x);
     list[k] = begin + k < end ? both.x : 0u;
     list[k + 1] = begin + k + 1 < end ? both.y : 0u;
@@ -66,7 +67,7 @@ uint[VKMESH_UNMASKED] load_list(Uints values, uint begin, uint end) {
 
 // The area vector of the face f, corner by corner.
 vec3 face_area_vector(Floats positions, Uints corners, uint f) {
-  const uvec3 v = load3_bits(Floats(corners), f);
+  const uvec3 v = load3_bits(Floats(uvec2(corners)), f);
   return area_vector(load3(positions, v.x), load3(positions, v.y), load3(positions, v.z));
 }
 

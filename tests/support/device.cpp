@@ -124,6 +124,10 @@ std::string device_name() {
   return name != nullptr && *name != '\0' ? name : "llvmpipe";
 }
 
+bool is_swiftshader(const Context& context) {
+  return context.info().driver.starts_with("SwiftShader");
+}
+
 bool gpu_assisted() {
   const char* asked = std::getenv("VKMESH_GPU_ASSISTED");
   return asked != nullptr && std::string(asked) == "1";

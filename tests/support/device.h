@@ -11,6 +11,9 @@ namespace vkmesh::test {
 /// VKMESH_TEST_DEVICE, by default "llvmpipe".
 std::string device_name();
 
+/// Whether SwiftShader is the context's driver.
+bool is_swiftshader(const Context& context);
+
 /// Whether VKMESH_GPU_ASSISTED is 1. Some tests then take smaller shapes: docs/design.md says why.
 bool gpu_assisted();
 

@@ -17,6 +17,7 @@ namespace vkmesh::detail {
 namespace {
 
 constexpr std::uint32_t kCases = 512;
+static_assert((kCases - 1) * std::uint64_t{VKMESH_CANARY_UINT_STEP} < std::uint64_t{1} << 31);
 
 /// What each result of shaders/core/canary.comp is.
 constexpr std::array<const char*, VKMESH_CANARY_RESULTS> kNames = {
@@ -69,7 +70,7 @@ std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t
           angle_between(unit, unit_vector(b)),
           c.x + c.y * (b.x - c.x),
           reciprocal(static_cast<float>(i + 1)),
-          static_cast<float>(i * 8388617u),
+          static_cast<float>(i * VKMESH_CANARY_UINT_STEP),
           arccosine(unit.x),
           exponential(a.y),
           vector_length(b),

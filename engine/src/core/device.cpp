@@ -142,6 +142,7 @@ Device::~Device() {
 Result<void> Device::initialise(const PhysicalDevice& physical) {
   info = physical.info;
   physical_device = physical.handle;
+  crashes_on_pointer_bitcasts = physical.crashes_on_pointer_bitcasts;
   VKMESH_TRY(functions, load_device_functions(instance_functions, handle));
   instance_functions.vkGetPhysicalDeviceMemoryProperties(physical_device, &memory);
 
@@ -242,6 +243,11 @@ Result<std::unique_ptr<Kernel>> Device::make_kernel(const KernelSource& source,
     return fail(ErrorCode::kUsage, what + ": " + std::to_string(push_constant_bytes) +
                                        " bytes of push constants are outside [8, " +
                                        std::to_string(max_push_constants) + "]");
+  if (shader.bitcasts_pointers && crashes_on_pointer_bitcasts)
+    return fail(ErrorCode::kNoDevice,
+                what + ": its SPIR-V bitcasts a pointer to a pointer, on which the driver of " + info.name +
+                    " crashes; in GLSL, convert one buffer reference to another by way of a "
+                    "uvec2 (GL_EXT_buffer_reference_uvec2)");
 
   const std::vector<std::uint32_t> spirv = with_float_controls(source.spirv, controls);
   auto kernel = std::make_unique<Kernel>();

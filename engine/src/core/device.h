@@ -55,6 +55,7 @@ class Instance {
 struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
+  bool crashes_on_pointer_bitcasts = false;  ///< Its driver does, while it makes a pipeline (spirv.h).
   DeviceInfo info;
 };
 
@@ -104,11 +105,12 @@ class Device {
   std::uint64_t max_allocation = 0;
   std::uint32_t max_groups = 0;
   std::uint32_t max_push_constants = 0;
-  bool rounds_to_nearest_even = false;  ///< Shaders can ask for it.
-  bool keeps_signed_zeros = false;      ///< Likewise.
-  bool draws = false;                   ///< The queue takes graphics commands.
-  std::uint32_t max_image_side = 0;     ///< Pixels.
-  std::uint32_t timestamp_bits = 0;     ///< 0: none.
+  bool rounds_to_nearest_even = false;       ///< Shaders can ask for it.
+  bool keeps_signed_zeros = false;           ///< Likewise.
+  bool crashes_on_pointer_bitcasts = false;  ///< As in PhysicalDevice.
+  bool draws = false;                        ///< The queue takes graphics commands.
+  std::uint32_t max_image_side = 0;          ///< Pixels.
+  std::uint32_t timestamp_bits = 0;          ///< 0: none.
   double timestamp_nanoseconds = 0.0;
 
   std::atomic<std::uint64_t> allocated{0};

@@ -96,6 +96,7 @@ PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle
   functions.vkGetPhysicalDeviceProperties2(handle, &more);
   device.info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
   if (driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE) device.info.loop_rounds = 65535;
+  device.crashes_on_pointer_bitcasts = driver.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
 
   VkPhysicalDeviceVulkan12Features features{};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace vkmesh::detail {
@@ -23,6 +24,7 @@ enum Opcode : std::uint16_t {
   kOpTypePointer = 32,
   kOpVariable = 59,
   kOpMemberDecorate = 72,
+  kOpBitcast = 124,
 };
 
 constexpr std::uint32_t kExecutionModelGlCompute = 5;
@@ -127,9 +129,23 @@ Result<std::vector<SpirvInstruction>> spirv_instructions(std::span<const std::ui
   return instructions;
 }
 
+bool bitcasts_pointers(std::span<const SpirvInstruction> instructions) {
+  // Names and decorations come before all types. So behind a type, an instruction whose first word is that
+  // type makes a value of it, whatever its opcode; and a value comes before its use.
+  std::set<std::uint32_t> pointer_types, pointers;
+  for (const SpirvInstruction& i : instructions) {
+    if (i.opcode == kOpTypePointer && i.words.size() >= 2) pointer_types.insert(i.words[1]);
+    if (i.words.size() < 3 || !pointer_types.contains(i.words[1])) continue;
+    pointers.insert(i.words[2]);
+    if (i.opcode == kOpBitcast && i.words.size() >= 4 && pointers.contains(i.words[3])) return true;
+  }
+  return false;
+}
+
 Result<SpirvKernel> inspect_spirv(std::span<const std::uint32_t> module) {
   VKMESH_TRY(const auto instructions, spirv_instructions(module));
   SpirvKernel kernel;
+  kernel.bitcasts_pointers = bitcasts_pointers(instructions);
   Types types;
   std::optional<std::uint32_t> push_constants;
   std::size_t entry_points = 0;

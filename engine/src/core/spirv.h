@@ -25,7 +25,11 @@ struct SpirvKernel {
   std::string entry_point;
   std::uint32_t workgroup_size = 0;
   std::uint32_t push_constant_bytes = 0;  ///< Up to the end of the last member.
+  bool bitcasts_pointers = false;         ///< bitcasts_pointers() of its instructions.
 };
+
+/// Whether some OpBitcast makes a pointer of a pointer: valid, but SwiftShader crashes on it.
+[[nodiscard]] bool bitcasts_pointers(std::span<const SpirvInstruction> instructions);
 
 /// Errors: kUsage unless there is one compute entry point, with a fixed workgroup of one dimension, and push
 /// constants made of scalars, vectors, buffer addresses and structs of these.

@@ -7,9 +7,11 @@
 
 #include <vkmesh/engine/core/kernel.h>
 
+#include "core/fake_loader.h"
 #include "core/spirv.h"
 #include "shaders.h"
 #include "support/device.h"
+#include "support/pointer_bitcast.h"
 
 namespace vkmesh::test {
 namespace {
@@ -18,6 +20,13 @@ Error error_of(const KernelSource& source) {
   const auto kernel = Kernel::get(test_context(), source);
   if (kernel) FAIL("kernel '" << source.name << "' was made");
   return kernel.error();
+}
+
+void VKAPI_PTR properties_of_swiftshader(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
+  FakeLoader::real<PFN_vkGetPhysicalDeviceProperties2>("vkGetPhysicalDeviceProperties2")(device, properties);
+  auto* next = static_cast<VkBaseOutStructure*>(properties->pNext);
+  if (next != nullptr && next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES)
+    reinterpret_cast<VkPhysicalDeviceDriverProperties*>(next)->driverID = VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
 }
 
 }  // namespace
@@ -64,6 +73,31 @@ TEST_CASE("what is no kernel is refused") {
   source.name = "noise";
   source.spirv = noise;
   CHECK(error_of(source).code == ErrorCode::kUsage);
+}
+
+TEST_CASE("a kernel that the driver is known to crash on is refused there, and made elsewhere") {
+  KernelSource source = shaders::vertex_normals;
+  static const std::vector<std::uint32_t> spirv =
+      with_pointer_bitcast(source.spirv);  // The context keeps its place.
+  source.name = "bitcasts a pointer";
+  source.spirv = spirv;
+  const auto require_refused = [&](Context& context) {
+    const auto refused = Kernel::get(context, source);
+    REQUIRE(!refused);
+    CHECK(refused.error().code == ErrorCode::kNoDevice);
+    CHECK_THAT(refused.error().message,
+               Catch::Contains("'bitcasts a pointer'") && Catch::Contains(context.info().name + " crashes"));
+  };
+  if (is_swiftshader(test_context())) {
+    require_refused(test_context());
+    return;
+  }
+  REQUIRE(Kernel::get(test_context(), source));
+  FakeLoader loader;
+  loader.replace("vkGetPhysicalDeviceProperties2", properties_of_swiftshader);
+  const auto context = Context::create(loader.options());
+  REQUIRE(context);
+  require_refused(**context);
 }
 
 TEST_CASE("SPIR-V that is cut off or changed anywhere is inspected without harm", "[no-device]") {

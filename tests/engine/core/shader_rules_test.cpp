@@ -14,6 +14,7 @@
 
 #include "core/spirv.h"
 #include "shaders.h"
+#include "support/pointer_bitcast.h"
 
 namespace vkmesh::test {
 namespace {
@@ -47,6 +48,8 @@ const std::set<std::uint32_t> kAllowedFunctions = {
 const std::set<std::uint32_t> kAllowedCapabilities = {1 /* Shader */,
                                                       5347 /* PhysicalStorageBufferAddresses */};
 
+const std::string kPointerBitcast = "a pointer is bitcast to a pointer, on which SwiftShader crashes";
+
 /// Each breach of the rules, as a sentence.
 std::vector<std::string> breaches(std::span<const std::uint32_t> module) {
   const auto instructions = detail::spirv_instructions(module);
@@ -67,6 +70,7 @@ std::vector<std::string> breaches(std::span<const std::uint32_t> module) {
     if (i.opcode == kOpTypeFloat && i.words[2] != 32)
       found.push_back("a float of " + std::to_string(i.words[2]) + " bits" + at);
   }
+  if (detail::bitcasts_pointers(*instructions)) found.push_back(kPointerBitcast);
   return found;
 }
 
@@ -80,6 +84,22 @@ TEST_CASE("shaders keep the rules of exact arithmetic", "[no-device]") {
   CHECK(shaders::kernels().size() >= 13);
   for (const KernelSource& source : shaders::kernels())
     for (const std::string& breach : breaches(source.spirv)) FAIL_CHECK(source.name << ": " << breach);
+}
+
+TEST_CASE("drawing shaders, which are not exact, bitcast no pointer to a pointer either", "[no-device]") {
+  for (const KernelSource& source :
+       {shaders::draw_corners_vert, shaders::draw_indexed_vert, shaders::draw_lines_frag,
+        shaders::draw_lines_vert, shaders::draw_points_frag, shaders::draw_points_vert,
+        shaders::draw_surface_frag}) {
+    INFO(source.name);
+    const auto instructions = detail::spirv_instructions(source.spirv);
+    REQUIRE(instructions);
+    CHECK(!detail::bitcasts_pointers(*instructions));
+  }
+}
+
+TEST_CASE("a bitcast from pointer to pointer is seen", "[no-device]") {
+  CHECK(breaches(with_pointer_bitcast(shaders::vertex_normals.spirv)) == std::vector{kPointerBitcast});
 }
 
 TEST_CASE("a breach of the rules is seen", "[no-device]") {

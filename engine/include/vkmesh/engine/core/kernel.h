@@ -26,7 +26,8 @@ class Kernel {
   /// Returns the kernel of that name, made by the first call. May be called from several threads.
   /// Where the device offers it, the SPIR-V is made to ask for rounding to nearest even and for signed zeros,
   /// infinities and NaNs to be kept (VK_KHR_shader_float_controls, core in Vulkan 1.2).
-  /// Errors: kUsage for SPIR-V that is no such shader; kOutOfMemory.
+  /// Errors: kUsage for SPIR-V that is no such shader; kNoDevice for SPIR-V that the device's driver is known
+  /// to crash on (SwiftShader: an OpBitcast from pointer to pointer); kOutOfMemory.
   [[nodiscard]] static Result<const Kernel*> get(Context& context, const KernelSource& source);
 
   [[nodiscard]] const std::string& name() const { return name_; }
