@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the demo or the tests need. Asks apt only for what is missing; safe to run again.
+# Installs the Debian packages that the demo or the tests need, and for the tests fetches SwiftShader. Asks apt only for what is
+# missing; safe to run again.
 #   tools/setup.sh demo|test
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -24,25 +25,26 @@ missing=()
 for package in "${packages[@]}"; do
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
 done
-[ ${#missing[@]} = 0 ] && exit 0
-
-as_root=()
-if [ "$(id -u)" != 0 ]; then
-  command -v sudo >/dev/null || {
-    echo "setup: these packages are missing, and there is neither root nor sudo to install them: ${missing[*]}" >&2
+if [ ${#missing[@]} != 0 ]; then
+  as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || {
+      echo "setup: these packages are missing, and there is neither root nor sudo to install them: ${missing[*]}" >&2
+      exit 1
+    }
+    as_root=(sudo)
+  fi
+  mkdir -p build
+  log=build/setup.log
+  echo "Installing ${#missing[@]} packages (log: $log) ..."
+  {
+    "${as_root[@]}" apt-get update -q &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+  } >"$log" 2>&1 </dev/null || {
+    tail -n 15 "$log" >&2
+    echo "setup: apt-get could not install: ${missing[*]}" >&2
+    echo "setup: the whole log is $log" >&2
     exit 1
   }
-  as_root=(sudo)
 fi
-mkdir -p build
-log=build/setup.log
-echo "Installing ${#missing[@]} packages (log: $log) ..."
-{
-  "${as_root[@]}" apt-get update -q &&
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
-} >"$log" 2>&1 </dev/null || {
-  tail -n 15 "$log" >&2
-  echo "setup: apt-get could not install: ${missing[*]}" >&2
-  echo "setup: the whole log is $log" >&2
-  exit 1
-}
+[ "$1" = demo ] || tools/fetch_swiftshader.sh
