@@ -2,7 +2,8 @@
 #include "commands.h"
 
 #ifdef VKMESH_HAS_VULKAN
-#include <vkmesh/engine/core/context.h>
+#include "passes/backend.h"
+#include "passes/device_probe.h"
 #endif
 
 namespace vkmesh::cli {
@@ -13,7 +14,7 @@ namespace {
 Result<void> run(Job& job) {
   Json& listed = job.json()["result"]["devices"];
   listed = Json::array();
-  auto devices = list_devices();
+  const auto devices = probe_devices(context_options("auto"));
   if (!devices && devices.error().code != ErrorCode::kNoDevice) return tl::unexpected<Error>(devices.error());
   if (!devices) job.note("no Vulkan device: " + devices.error().message);
   if (devices && devices->empty()) job.note("no Vulkan device: the loader finds none");
@@ -53,7 +54,9 @@ void add_devices(CLI::App& app, Program& program) {
   command->footer(
       "The index, or a part of the name in any case, is what --device takes. auto takes the first usable "
       "discrete,\n"
-      "integrated or virtual GPU; software devices serve when they are named.\n\n"
+      "integrated or virtual GPU; software devices serve when they are named. Each device is opened in a "
+      "process of its "
+      "own,\nso that a driver that crashes is only named, and its arithmetic is compared with the host's.\n\n"
       "Example:\n  vkmesh devices");
   add_common_options(*command, program.options, false, false);
   command->callback([&program] {

@@ -24,6 +24,7 @@
 
 #include "commands.h"
 #include "passes/backend.h"
+#include "passes/device_probe.h"
 
 namespace vkmesh::cli {
 namespace {
@@ -119,20 +120,16 @@ Result<std::unique_ptr<Context>> open_context(Job& job) {
       return fail(
           ErrorCode::kNoDevice,
           "drawing has no CPU path of its own: --device auto takes software Vulkan where there is no GPU");
-    auto context = Context::create(options);
-    if (!context && context.error().code == ErrorCode::kNoDevice && options.device == "auto") {
-      VKMESH_TRY(const std::vector<DeviceInfo> devices, list_devices());
-      for (const DeviceInfo& device : devices) {
-        if (!device.usable) continue;
-        options.device = std::to_string(device.index);
-        context = Context::create(options);
-        break;
-      }
+    if (options.device == "auto") {
+      const auto index = probe_for_auto(options, true);
+      if (index)
+        options.device = *index;
+      else if (!index.error().message.empty())
+        return tl::unexpected<Error>(index.error());
     }
+    auto context = Context::create(options);
     if (!context) return context;
-    const DeviceInfo& info = (*context)->info();
-    job.json()["device"] = {{"name", info.name}, {"driver", info.driver}, {"type", name_of(info.type)}};
-    job.row("device", info.name + "; " + info.driver + "; " + name_of(info.type));
+    report_device(job, (*context)->info());
     return context;
   });
 }

@@ -18,6 +18,14 @@ void use_host(Job& job) {
     job.note("this subcommand runs on the host: the device " + asked + " was not used");
 }
 
+#ifdef VKMESH_HAS_VULKAN
+const char* note_no_gpu(Job& job, const Error& error) {
+  if (error.message.empty()) return " (no GPU)";
+  job.note("no GPU serves, the CPU computes: " + error.message);
+  return " (no GPU that serves)";
+}
+#endif
+
 Result<Backend> open_backend(Job& job) {
   const std::string& asked = job.options().device;
   const char* why = "";
@@ -27,7 +35,7 @@ Result<Backend> open_backend(Job& job) {
     if (context) return Backend(job, *std::move(context));
     if (asked != "auto" || context.error().code != ErrorCode::kNoDevice)
       return tl::unexpected<Error>(std::move(context).error());
-    why = " (no GPU)";
+    why = note_no_gpu(job, context.error());
 #else
     if (asked != "auto")
       return fail(ErrorCode::kNoDevice,

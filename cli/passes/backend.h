@@ -69,8 +69,15 @@ void use_host(Job& job);
 /// error.
 [[nodiscard]] ContextOptions context_options(const std::string& device);
 
-/// A Vulkan device, chosen as ContextOptions::device is, reported in the job. Errors: kNoDevice,
-/// kOutOfMemory.
+/// Notes why "auto" has come to the CPU, unless there is just no GPU; what the device's row then adds to
+/// "cpu".
+[[nodiscard]] const char* note_no_gpu(Job& job, const Error& error);
+
+/// Reports the device that the job runs on.
+void report_device(Job& job, const DeviceInfo& info);
+
+/// A Vulkan device, chosen as ContextOptions::device is, and for "auto" by probe_for_auto(); reported in the
+/// job. Errors: kNoDevice, kOutOfMemory.
 [[nodiscard]] Result<std::unique_ptr<Context>> open_context(Job& job, const std::string& device);
 
 /// Runs what `record` records. Returns the device's time in milliseconds, by its own clock where it has one.

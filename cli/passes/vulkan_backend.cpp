@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "passes/backend.h"
+#include "passes/device_probe.h"
 
 namespace vkmesh::cli {
 
@@ -50,12 +51,24 @@ ContextOptions context_options(const std::string& device) {
   return options;
 }
 
+void report_device(Job& job, const DeviceInfo& info) {
+  job.json()["device"] = {{"name", info.name},
+                          {"driver", info.driver},
+                          {"type", name_of(info.type)},
+                          {"api_version", info.api_version}};
+  job.row("device",
+          info.name + "; " + info.driver + "; " + name_of(info.type) + "; Vulkan " + info.api_version);
+}
+
 Result<std::unique_ptr<Context>> open_context(Job& job, const std::string& device) {
-  VKMESH_TRY(std::unique_ptr<Context> context,
-             job.timed("open", [&] { return Context::create(context_options(device)); }));
-  const DeviceInfo& info = context->info();
-  job.json()["device"] = {{"name", info.name}, {"driver", info.driver}, {"type", name_of(info.type)}};
-  job.row("device", info.name + "; " + info.driver + "; " + name_of(info.type));
+  VKMESH_TRY(std::unique_ptr<Context> context, job.timed("open", [&]() -> Result<std::unique_ptr<Context>> {
+    ContextOptions options = context_options(device);
+    if (device == "auto") {
+      VKMESH_TRY(options.device, probe_for_auto(options, false));
+    }
+    return Context::create(options);
+  }));
+  report_device(job, context->info());
   return context;
 }
 

@@ -1,4 +1,6 @@
 // The choice of the device, and the promise that all devices write the same bytes.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "meshes.h"
@@ -58,6 +60,44 @@ TEST_CASE("devices lists the software device", "[device]") {
     }
   }
   CHECK(found);
+}
+
+TEST_CASE("a driver that makes no device, or crashes, takes neither devices nor auto down", "[device]") {
+  const Scratch scratch;
+  const std::string in = scratch.file("in.off", kTetrahedronOff);
+  struct Case {
+    std::string fails, why;
+    bool listed = true;
+  };
+  for (const Case& c :
+       {Case{"no-device", "VK_ERROR_INITIALIZATION_FAILED"},
+        Case{"crash-opening", "crashes (Illegal instruction) while it is opened"},
+        Case{"crash-listing", "a Vulkan driver crashes (Segmentation fault) while devices are listed",
+             false}}) {
+    CAPTURE(c.fails);
+    // The fake's GPU stands before those of the system's drivers.
+    RunOptions fake;
+    fake.environment = {{"VK_ADD_DRIVER_FILES", VKMESH_FAKE_ICD_MANIFEST}, {"VKMESH_FAKE_ICD", c.fails}};
+    const Outcome outcome = vkmesh_run({"devices", "--json"}, fake);
+    REQUIRE(outcome.code == 0);
+    const auto devices = outcome.json().at("result").at("devices");
+    if (c.listed) {
+      const auto gpu = std::find_if(devices.begin(), devices.end(),
+                                    [](const auto& d) { return d.at("name") == "Fake GPU"; });
+      REQUIRE(gpu != devices.end());
+      CHECK(gpu->at("usable") == false);
+      CHECK_THAT(gpu->at("rejected").template get<std::string>(), Contains(c.why));
+      CHECK(
+          std::any_of(devices.begin(), devices.end(), [](const auto& d) { return d.at("usable") == true; }));
+    } else {
+      CHECK(devices.empty());
+      CHECK_THAT(outcome.json().at("notes").dump(), Contains(c.why));
+    }
+    const Outcome automatic = vkmesh_run({"normals", in, scratch.path("out.ply"), "--json"}, fake);
+    REQUIRE(automatic.code == 0);
+    CHECK(automatic.json().at("device").at("type") == "host");
+    CHECK_THAT(automatic.json().at("notes").dump(), Contains("no GPU serves") && Contains(c.why));
+  }
 }
 
 TEST_CASE("auto takes no software device", "[device]") {

@@ -240,6 +240,7 @@ Result<std::unique_ptr<BenchPlace>> open_place(Job& job) {
   if (asked != "cpu") {
     auto vulkan = open_vulkan_bench(job, asked);
     if (vulkan || asked != "auto" || vulkan.error().code != ErrorCode::kNoDevice) return vulkan;
+    (void)note_no_gpu(job, vulkan.error());
   }
 #endif
   use_host(job);
