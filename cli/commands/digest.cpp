@@ -4,9 +4,13 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <sys/utsname.h>
 
 #include <vkmesh/mesh/triangulate.h>
 
@@ -23,6 +27,14 @@ struct DigestOptions {
 
 struct Line {
   std::string digest, pass, file;
+  std::optional<Error> error;  ///< Why the pass has no digest.
+};
+
+/// What --check found of one pass.
+struct Verdict {
+  std::string pass;
+  std::size_t meshes = 0, differing = 0;
+  std::string first;  ///< Of those that differ.
 };
 
 struct Input {
@@ -57,9 +69,11 @@ Result<std::vector<Line>> digests_of(Job& job, Backend& backend, const std::stri
     auto output = backend.run(row.pass(input), input);
     if (!output) {
       if (output.error().where.file.empty()) output.error().where.file = file;
-      return tl::unexpected<Error>(output.error());
+      if (output.error().code == ErrorCode::kInterrupted) return tl::unexpected<Error>(output.error());
+      lines.push_back({{}, row.name, file, output.error()});
+      continue;
     }
-    lines.push_back({hexadecimal(row.digest(*output)), row.name, file});
+    lines.push_back({hexadecimal(row.digest(*output)), row.name, file, {}});
   }
   return lines;
 }
@@ -76,11 +90,56 @@ Result<std::vector<Line>> read_list(const std::string& path) {
     const std::size_t space = text.find("  ", 18);
     if (space == std::string::npos) continue;
     const std::size_t name = text.find_first_not_of(' ', space);
-    lines.push_back({text.substr(0, 16), text.substr(18, space - 18), text.substr(name)});
+    lines.push_back({text.substr(0, 16), text.substr(18, space - 18), text.substr(name), {}});
   }
   if (lines.empty())
     return fail(ErrorCode::kUnreadable, "holds no digests, or cannot be read", {path, {}, {}});
   return lines;
+}
+
+/// Reports a verdict for each pass, in a form to be pasted into an issue.
+Result<void> check(Job& job, const std::string& list, const std::vector<Line>& expected,
+                   const std::vector<Line>& lines) {
+  std::vector<Verdict> verdicts;
+  std::size_t differences = 0;
+  std::string first;
+  std::optional<Error> error;
+  std::set<std::string> files;
+  for (const Line& line : expected) {
+    files.insert(line.file);
+    auto verdict =
+        std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) { return v.pass == line.pass; });
+    if (verdict == verdicts.end()) verdict = verdicts.insert(verdicts.end(), Verdict{line.pass, 0, 0, {}});
+    ++verdict->meshes;
+    const auto found = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
+      return l.file == line.file && l.pass == line.pass;
+    });
+    if (found != lines.end() && found->digest == line.digest) continue;
+    ++differences;
+    std::string what = "no such pass";
+    if (found != lines.end())
+      what = found->error ? found->error->message : found->digest + " for " + line.digest;
+    if (first.empty()) first = line.pass + " of " + line.file + ", " + what;
+    if (!error && found != lines.end()) error = found->error;
+    if (verdict->differing++ == 0) verdict->first = line.file + ", " + what;
+  }
+  Json& passes = job.json()["result"]["passes"] = Json::array();
+  for (const Verdict& v : verdicts) {
+    passes.push_back({{"pass", v.pass}, {"meshes", v.meshes}, {"differing", v.differing}});
+    job.row(v.pass, v.differing == 0 ? "the same bytes, " + count_of(v.meshes, "mesh", "meshes")
+                                     : "DIFFERS for " + grouped(v.differing) + " of " +
+                                           count_of(v.meshes, "mesh", "meshes") + ", first " + v.first);
+  }
+  job.json()["result"]["differences"] = differences;
+  job.row("digests", grouped(expected.size()) + " checked, " + grouped(files.size()) + " files");
+  if (differences == 0) return {};
+  // The report is wanted above all where something differs. (With --json the error alone is printed.)
+  if (!job.options().json) VKMESH_CHECK(job.print());
+  if (error) return tl::unexpected<Error>(*error);
+  return fail(ErrorCode::kUnsuitable,
+              count_of(differences, "digest") + " of " + grouped(expected.size()) +
+                  (differences == 1 ? " differs: " : " differ, first ") + first,
+              {list, {}, {}});
 }
 
 Result<void> run(Job& job, const DigestOptions& options) {
@@ -94,39 +153,29 @@ Result<void> run(Job& job, const DigestOptions& options) {
       if (std::find(files.begin(), files.end(), line.file) == files.end()) files.push_back(line.file);
   }
   VKMESH_TRY(Backend backend, open_backend(job));
+  if (!options.check.empty()) {
+    utsname system{};
+    (void)uname(&system);
+    job.row("program", std::string("vkmesh " VKMESH_VERSION "; ") + system.sysname + " " + system.release +
+                           "; " + system.machine);
+  }
   Json& list = job.json()["result"]["digests"] = Json::array();
   std::vector<Line> lines;
   for (const std::string& file : files) {
     VKMESH_TRY(std::vector<Line> some, digests_of(job, backend, file));
     std::move(some.begin(), some.end(), std::back_inserter(lines));
   }
+  for (const Line& line : lines)
+    if (!line.error) list.push_back({{"file", line.file}, {"pass", line.pass}, {"digest", line.digest}});
+  if (!options.check.empty()) return check(job, options.check, expected, lines);
+
   std::size_t width = 0;
   for (const Line& line : lines) width = std::max(width, line.pass.size());
   for (const Line& line : lines) {
-    list.push_back({{"file", line.file}, {"pass", line.pass}, {"digest", line.digest}});
-    if (options.check.empty())
-      job.row(line.digest, line.pass + std::string(width + 2 - line.pass.size(), ' ') + line.file);
+    if (line.error) return tl::unexpected<Error>(*line.error);
+    job.row(line.digest, line.pass + std::string(width + 2 - line.pass.size(), ' ') + line.file);
   }
-  if (options.check.empty()) return {};
-
-  std::string differing;
-  std::size_t differences = 0;
-  for (const Line& line : expected) {
-    const auto found = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
-      return l.file == line.file && l.pass == line.pass;
-    });
-    if (found != lines.end() && found->digest == line.digest) continue;
-    if (differences++ == 0)
-      differing = line.pass + " of " + line.file + ", " +
-                  (found == lines.end() ? "no such pass" : found->digest) + " for " + line.digest;
-  }
-  job.json()["result"]["differences"] = differences;
-  job.row("digests", grouped(expected.size()) + " checked, " + grouped(files.size()) + " files");
-  if (differences == 0) return {};
-  return fail(ErrorCode::kUnsuitable,
-              count_of(differences, "digest") + " of " + grouped(expected.size()) +
-                  (differences == 1 ? " differs: " : " differ, first ") + differing,
-              {options.check, {}, {}});
+  return {};
 }
 
 }  // namespace
@@ -139,7 +188,9 @@ void add_digest(CLI::App& app, Program& program) {
       "lines "
       "and fails (exit code 4)\nwhere one differs. Polygons are cut into triangles, and what is no manifold "
       "is "
-      "mended first.\n\n"
+      "mended first.\nFrom a checkout with its data, --check tests/digests.txt --device NAME says of any GPU "
+      "whether it keeps the promise;\nits report, pasted into an issue, puts the device on the list of those "
+      "that were seen to.\n\n"
       "Example:\n  vkmesh digest data/cgal/meshes/elephant.off --device cpu");
   add_common_options(*command, program.options, false, false);
   const auto options = std::make_shared<DigestOptions>();

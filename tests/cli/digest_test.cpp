@@ -8,6 +8,17 @@
 
 using namespace vkmesh::test;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+std::size_t rows_that_say(const std::string& report, const std::string& what) {
+  std::size_t rows = 0;
+  for (std::size_t at = report.find(what); at != std::string::npos; at = report.find(what, at + 1)) ++rows;
+  return rows;
+}
+
+}  // namespace
 
 TEST_CASE("digests are checked against the list that was printed") {
   const Scratch scratch;
@@ -16,7 +27,11 @@ TEST_CASE("digests are checked against the list that was printed") {
   REQUIRE(printed.code == 0);
   CHECK_THAT(printed.out, Contains("  vertex-normals  ") && Contains("  " + in + "\n"));
   const std::string list = scratch.file("list.txt", printed.out);
-  CHECK(vkmesh_run({"digest", "--check", list, "--device", "cpu"}).code == 0);
+  const Outcome report = vkmesh_run({"digest", "--check", list, "--device", "cpu"});
+  CHECK(report.code == 0);
+  CHECK(rows_that_say(report.out, "the same bytes, 2 meshes") == 17);
+  CHECK_THAT(report.out,
+             StartsWith("device ") && Contains("\nprogram ") && Contains("vkmesh " VKMESH_VERSION "; Linux"));
 
   // The digest of something else in the place of the first.
   std::string changed = printed.out;
@@ -26,6 +41,9 @@ TEST_CASE("digests are checked against the list that was printed") {
       vkmesh_run({"digest", "--check", scratch.file("changed.txt", changed), "--device", "cpu"});
   CHECK(refused.code == 4);
   CHECK_THAT(refused.err, Contains("1 digest of ") && Contains("differs: vertex-normals of " + in));
+  // The report comes all the same.
+  CHECK(rows_that_say(refused.out, "the same bytes, 2 meshes") == 16);
+  CHECK(rows_that_say(refused.out, "DIFFERS for 1 of 2 meshes, first " + in) == 1);
 }
 
 TEST_CASE("a digest is that of the bytes: one moved point changes all of them") {
