@@ -115,7 +115,6 @@ Result<void> add_built_ins(Programme& programme, const Input& input, const std::
 void add_host_built_ins(Programme& programme, const Input& input);
 void add_openmesh(Programme& programme, const Input& input, const ReadingFiles& files);
 void add_meshoptimizer(Programme& programme, const Input& input);
-void add_newer_meshoptimizer(Programme& programme, const Input& input);
 
 /// Adds one way to decimate, which fills the surface and returns the milliseconds that count.
 void add_decimation(Programme& programme, const DecimationCase& wanted, const std::string& name,

@@ -65,7 +65,7 @@ Result<void> add_host(Programme& programme, const Input& input) {
           [&mesh = wanted.mesh, target = wanted.target, &removal](Surface& surface) -> Result<double> {
             DecimateOptions options;
             options.operation = removal.operation;
-            options.target_faces = target;
+            options.target.faces = target;
             tbb::task_arena threads(removal.threads);
             threads.initialize();
             const Stopwatch watch;

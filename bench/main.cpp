@@ -68,9 +68,6 @@ Result<Programme> programme_for(const Options& options, const Input& input, cons
 #ifdef VKMESH_BENCH_MESHOPTIMIZER
   add_meshoptimizer(programme, input);
 #endif
-#ifdef VKMESH_BENCH_NEWER_MESHOPTIMIZER
-  add_newer_meshoptimizer(programme, input);
-#endif
   std::erase_if(programme.contestants, [&](const Contestant& contestant) {
     return contestant.step.find(options.only) == std::string::npos ||
            (contestant.slow && options.slow_repetitions == 0);

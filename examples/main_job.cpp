@@ -82,7 +82,7 @@ Result<void> run(const std::filesystem::path& in, const std::filesystem::path& o
   row("download", "positions, normals, angles", lap(from), name);
 
   DecimateOptions decimation;
-  decimation.target_faces = c.mesh.face_count() / 10;
+  decimation.target.faces = c.mesh.face_count() / 10;
   VKMESH_TRY(const Decimated small, decimate(c.mesh, mesh.points, decimation));
   VKMESH_CHECK(validate(small.mesh));
   row("simplify", grouped(small.mesh.face_count(), "faces; ") + name_of(small.stop), lap(from), "host");

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Decimates the dragon under guaranteed bounds of the distance, measures the distance, and puts the table into
-# bench/results/distances-2core-epyc.md and docs/decimation.md. Needs jq (Debian: jq). Takes some minutes.
+# bench/results/distances-2core-epyc.md and docs/performance.md. Needs jq (Debian: jq). Takes some minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v jq >/dev/null || { echo "$0: needs jq: apt-get install jq" >&2; exit 1; }
@@ -30,4 +30,4 @@ row() {
   for bound in 3e-4 1e-3 3e-3; do row $bound --ratio 0.005 --max-relative-distance $bound; done
   row "none, \`--ratio 0.1 --watch-distance\`" --ratio 0.1 --watch-distance
 } >$result
-sed -i -e '/^<!-- distances -->/,/^<!-- end of distances -->/{//!d}' -e "/^<!-- distances -->/r $result" docs/decimation.md
+sed -i -e '/^<!-- distances -->/,/^<!-- end of distances -->/{//!d}' -e "/^<!-- distances -->/r $result" docs/performance.md

@@ -369,7 +369,7 @@ void add_consolidate_options(CLI::App& command, CommonOptions& options) {
     if (error != std::errc() || end != to || !(value >= 0) || value > std::numeric_limits<double>::max())
       throw CLI::ValidationError("--weld",
                                  "'" + text + "' is no length, nor a share of the diagonal like 0.01%");
-    consolidation.weld = WeldOptions{relative ? value / 100 : value, relative};
+    consolidation.weld = WeldOptions{relative ? Length::relative(value / 100) : Length::absolute(value)};
   };
   command
       .add_option_function<std::string>(

@@ -24,7 +24,7 @@
 #include <vkmesh/repair/consolidate.h>
 
 #include "check.h"
-#include "decimation/order/collapse_order.h"
+#include "decimation/decimation_state.h"
 #include "random_manifold.h"
 
 namespace vkmesh::fuzz {
@@ -102,21 +102,22 @@ void add_attributes(Bytes& bytes, Input<Point>& input, DecimateOptions& options)
   }
 }
 
-void add_criteria(Bytes& bytes, DecimateCriteria& criteria) {
+void add_criteria(Bytes& bytes, DecimateOptions& options) {
   const std::uint8_t which = bytes.next();
   if (which % 4 != 1) return;
   const double size = std::ldexp(1.0, bytes.next() % 16 - 12);
-  if ((which & 4) != 0) criteria.max_relative_distance = size;
-  if ((which & 8) != 0) criteria.max_original_normal_deviation = std::min(0.1 + size, 3.0);
-  if ((which & 16) != 0) criteria.max_aspect_ratio = 1 + size;
-  if ((which & 32) != 0) criteria.max_edge_length = size;
-  if ((which & 64) != 0) criteria.max_valence = 3 + bytes.next() % 8;
-  criteria.watch_distance = (which & 128) != 0;
+  DecimateBounds& bounds = options.bounds;
+  if ((which & 4) != 0) bounds.distance = Length::relative(size);
+  if ((which & 8) != 0) bounds.original_normal_deviation = std::min(0.1 + size, 3.0);
+  if ((which & 16) != 0) bounds.aspect_ratio = 1 + size;
+  if ((which & 32) != 0) bounds.edge_length = Length::absolute(size);
+  if ((which & 64) != 0) bounds.valence = 3 + bytes.next() % 8;
+  bounds.report_distance = (which & 128) != 0;
   const std::uint8_t weights = bytes.next();
-  if ((weights & 1) != 0) criteria.density_weight = size;
-  if ((weights & 2) != 0) criteria.aspect_weight = size;
-  if ((weights & 4) != 0) criteria.normal_weight = size;
-  if ((weights & 15) == 9) criteria.quadric_weight = 0;
+  if ((weights & 1) != 0) options.weights.density = size;
+  if ((weights & 2) != 0) options.weights.aspect_ratio = size;
+  if ((weights & 4) != 0) options.weights.normals = size;
+  if ((weights & 15) == 9) options.weights.quadric = 0;
 }
 
 template <class Point>
@@ -125,25 +126,23 @@ DecimateOptions options_of(Bytes& bytes, Input<Point>& input) {
   options.keep_history = true;
   options.operation = std::array{DecimateOperation::kEdgeCollapse, DecimateOperation::kHalfEdgeCollapse,
                                  DecimateOperation::kVertexRemoval}[bytes.next() % 3];
-  options.placement = std::array{CollapsePlacement::kOptimal, CollapsePlacement::kMidpoint,
-                                 CollapsePlacement::kEndpoint}[bytes.next() % 3];
-  options.boundary = std::array{DecimateBoundary::kInShape, DecimateBoundary::kFree,
-                                DecimateBoundary::kKept}[bytes.next() % 3];
-  options.boundary_weight = std::array{10.0, 0.0, 1e6, 1e-6}[bytes.next() % 4];
-  options.max_normal_deviation = std::array{1.3, 1.3, 0.1, 3.14}[bytes.next() % 4];
+  options.curves.boundary = std::array{DecimateBoundary::kInShape, DecimateBoundary::kFree,
+                                       DecimateBoundary::kKept}[bytes.next() % 3];
+  options.curves.boundary_weight = std::array{10.0, 0.0, 1e6, 1e-6}[bytes.next() % 4];
+  options.bounds.normal_deviation = std::array{1.3, 1.3, 0.1, 3.14}[bytes.next() % 4];
   const std::uint8_t crease = bytes.next();
-  if (crease % 4 == 0) options.crease_angle = 0.01 + crease / 100.0;
-  if (crease % 8 == 0) options.crease_weight = 1e4;
+  if (crease % 4 == 0) options.curves.crease_angle = 0.01 + crease / 100.0;
+  if (crease % 8 == 0) options.curves.crease_weight = 1e4;
   const std::uint8_t bound = bytes.next();
-  if (bound % 4 == 1) options.max_relative_error = bound / 4 / 640.0;
-  if (bound % 4 == 2) options.max_error = std::ldexp(1.0, bound / 4 - 32);
+  if (bound % 4 == 1) options.bounds.error = Length::relative(bound / 4 / 640.0);
+  if (bound % 4 == 2) options.bounds.error = Length::absolute(std::ldexp(1.0, bound / 4 - 32));
   const std::uint8_t prune = bytes.next();
-  if (prune % 8 == 1) options.prune_relative_size = prune / 256.0;
-  options.locked_vertices = some_of(bytes, input.points.size());
-  options.locked_edges = some_of(bytes, input.corners.size());
-  options.locked_faces = some_of(bytes, input.corners.size() / 3);
+  if (prune % 8 == 1) options.prune_size = Length::relative(prune / 256.0);
+  options.locked.vertices = some_of(bytes, input.points.size());
+  options.locked.edges = some_of(bytes, input.corners.size());
+  options.locked.faces = some_of(bytes, input.corners.size() / 3);
   add_attributes(bytes, input, options);
-  add_criteria(bytes, options.criteria);
+  add_criteria(bytes, options);
   return options;
 }
 
@@ -184,7 +183,7 @@ void require_maps(const BasicDecimated<Point>& result, const Input<Point>& input
   for (std::size_t v = 0; v < input.points.size(); ++v) {
     const std::uint32_t to = result.vertex_map[v];
     require(to < vertices || to == kInvalid, "the vertex map names vertices");
-    if (options.prune_relative_size) continue;
+    if (options.prune_size) continue;
     require((to == kInvalid) == input.mesh.is_isolated(VertexId(static_cast<std::uint32_t>(v))),
             "every vertex but isolated ones has one that stands for it");
   }
@@ -208,7 +207,7 @@ void require_maps(const BasicDecimated<Point>& result, const Input<Point>& input
 template <class Point>
 void require_locks(const BasicDecimated<Point>& result, const Input<Point>& input,
                    const DecimateOptions& options) {
-  if (options.prune_relative_size) return;  // what is locked may be pruned
+  if (options.prune_size) return;  // what is locked may be pruned
   const auto require_vertex = [&](std::uint32_t v) {
     const std::uint32_t to = result.vertex_map[v];
     if (to == kInvalid) return;  // isolated
@@ -223,11 +222,11 @@ void require_locks(const BasicDecimated<Point>& result, const Input<Point>& inpu
     require(result.mesh.find_half_edge(p, q).valid() || result.mesh.find_half_edge(q, p).valid(),
             "locked edges stay");
   };
-  for (const std::uint32_t v : options.locked_vertices) require_vertex(v);
-  for (const std::uint32_t h : options.locked_edges) require_edge(h);
-  for (const std::uint32_t f : options.locked_faces)
+  for (const std::uint32_t v : options.locked.vertices) require_vertex(v);
+  for (const std::uint32_t h : options.locked.edges) require_edge(h);
+  for (const std::uint32_t f : options.locked.faces)
     for (std::uint32_t i = 0; i < 3; ++i) require_edge(3 * f + i);
-  if (options.boundary != DecimateBoundary::kKept) return;
+  if (options.curves.boundary != DecimateBoundary::kKept) return;
   for (std::uint32_t h = 0; h < input.corners.size(); ++h)
     if (input.mesh.is_boundary(HalfEdgeId(h))) require_edge(h);
   require(result.mesh.boundary_half_edge_count() == input.mesh.boundary_half_edge_count(),
@@ -279,7 +278,7 @@ void require_attributes(const BasicDecimated<Point>& result, const Input<Point>&
         return false;
     return input.group_of_corner.empty() || input.group_of_corner[a] == input.group_of_corner[b];
   };
-  if (!options.prune_relative_size)
+  if (!options.prune_size)
     require(charts(input.mesh, alike) ==
                 charts(result.mesh, [&](std::uint32_t a,
                                         std::uint32_t b) { return after.corners[a] == after.corners[b]; }),
@@ -378,18 +377,18 @@ template <class Point>
 void require_stop(const BasicDecimated<Point>& result, const Input<Point>& input,
                   const DecimateOptions& options) {
   const std::size_t vertices = result.mesh.vertex_count(), faces = result.mesh.face_count();
-  const std::size_t most_faces = options.target_faces.value_or(0),
-                    most_vertices = options.target_vertices.value_or(0);
+  const std::size_t most_faces = options.target.faces.value_or(0),
+                    most_vertices = options.target.vertices.value_or(0);
   const bool reached = faces <= most_faces || vertices <= most_vertices;
   require(reached == (result.stop == DecimateStop::kTargetReached), "it says whether a target was reached");
   if (result.collapses > 0)
     require(faces + 1 >= most_faces && vertices >= most_vertices, "no target is undershot");
   require(std::isfinite(result.error) && result.error >= 0, "the error is a number");
   constexpr double kRounding = 1 + 1e-6;
-  if (options.max_error) require(result.error <= kRounding * *options.max_error, "max_error holds");
-  if (options.max_relative_error)
-    require(result.relative_error <= kRounding * *options.max_relative_error, "max_relative_error holds");
-  if (!options.prune_relative_size)
+  if (const auto& bound = options.bounds.error)
+    require((bound->is_relative ? result.relative_error : result.error) <= kRounding * bound->value,
+            "the bound of the error holds");
+  if (!options.prune_size)
     require(vertices + result.collapses == input.used, "an operation takes one vertex");
 }
 
@@ -425,30 +424,30 @@ void require_no_flips(const BasicDecimated<Point>& result, const Input<Point>& i
           "no face is flipped");
 }
 
-/// What is told of the distance between both surfaces, and of what holds the rest.
+/// What is told of the distance between both surfaces, and of what blocks the rest.
 template <class Point>
 void require_criteria(const BasicDecimated<Point>& result, const Input<Point>& input,
                       const DecimateOptions& options) {
-  const DecimateCriteria& criteria = options.criteria;
-  require(result.distance_bound.has_value() == (criteria.watch_distance || criteria.max_relative_distance),
+  const DecimateBounds& bounds = options.bounds;
+  require(result.distance_bound.has_value() == (bounds.report_distance || bounds.distance),
           "the distance is told when it is watched");
-  const auto& h = result.held;
-  const std::size_t held = h.link + h.fold_over + h.error + h.locked + h.boundary + h.seam + h.criterion;
+  const auto& counts = result.blocked.counts;
+  const std::size_t blocked = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   if (result.stop == DecimateStop::kTargetReached)
-    require(held == 0, "nothing holds what could go on");
+    require(blocked == 0, "nothing blocks what could go on");
   else if (result.stop != DecimateStop::kTimeLimit)
-    require(held == (options.operation == DecimateOperation::kVertexRemoval ? result.mesh.vertex_count()
-                                                                            : result.mesh.edge_count()),
-            "something holds all that is left");
+    require(blocked == (options.operation == DecimateOperation::kVertexRemoval ? result.mesh.vertex_count()
+                                                                               : result.mesh.edge_count()),
+            "something blocks all that is left");
   if constexpr (std::is_same_v<Point, Vec3>) {
-    if (!result.distance_bound || options.prune_relative_size || result.mesh.face_count() > 500) return;
+    if (!result.distance_bound || options.prune_size || result.mesh.face_count() > 500) return;
     const auto distance = surface_distance({input.points, input.corners},
                                            {result.positions, result.mesh.origins()}, {300, 1, 0});
     if (!distance) return;  // no area
     require(distance->two_sided().maximum <= *result.distance_bound + 1e-6 * distance->diagonal,
             "no sample is farther than the bound");
-    if (criteria.max_relative_distance)
-      require(*result.distance_bound <= *criteria.max_relative_distance * distance->diagonal * (1 + 1e-6),
+    if (bounds.distance)
+      require(*result.distance_bound <= bounds.distance->in_units(distance->diagonal) * (1 + 1e-6),
               "the bound holds");
   }
 }
@@ -509,20 +508,17 @@ void fuzz_as(Bytes& bytes) {
 
   DecimateOptions options = options_of(bytes, input);
   const std::uint8_t how = bytes.next();
-  if (how % 4 == 1) options.target_faces = bytes.below(input.corners.size() / 3 + 1);
+  if (how % 4 == 1) options.target.faces = bytes.below(input.corners.size() / 3 + 1);
   const BasicDecimated<Point> whole = run(input, options);
   if constexpr (std::is_same_v<Point, Vec3>) {
-    const auto parted =
-        detail::decimate({input.points, input.corners}, options, detail::CollapseOrder::kPartitioned);
+    const auto parted = detail::decimate_in_partitions({input.points, input.corners}, options);
     require(parted.has_value(), "decimated in parts");
     require_sound(*parted, input, options);
     // Swept at first if the target is far.
     DecimateOptions free = options;
     free.keep_history = false;
-    free.max_error.reset();
-    free.max_relative_error.reset();
-    const auto swept =
-        detail::decimate({input.points, input.corners}, free, detail::CollapseOrder::kPartitioned);
+    free.bounds.error.reset();
+    const auto swept = detail::decimate_in_partitions({input.points, input.corners}, free);
     require(swept.has_value(), "swept");
     require_sound(*swept, input, free);
     if (options.operation == DecimateOperation::kHalfEdgeCollapse && options.attributes.empty() &&
@@ -532,7 +528,7 @@ void fuzz_as(Bytes& bytes) {
   if (how % 4 != 0) return;
   // The same up to each vertex count: the state of the run after each of its operations.
   for (std::size_t left = input.used; left > whole.mesh.vertex_count(); --left) {
-    options.target_vertices = left;
+    options.target.vertices = left;
     const BasicDecimated<Point> part = run(input, options);
     require(part.history.size() <= whole.history.size() &&
                 std::equal(part.history.begin(), part.history.end(), whole.history.begin(),
@@ -566,7 +562,7 @@ void fuzz_index_buffer(const Input<Vec3>& input, DecimateOptions options) {
           "sources ascend");
   const Topology after = welded(input.points, result->indices);
   require(after.manifold() && after.oriented(), "a level is a manifold");
-  if (options.prune_relative_size) return;
+  if (options.prune_size) return;
   require(after.euler_characteristic() == before.euler_characteristic() &&
               after.boundary_loops == before.boundary_loops,
           "a level has the topology of the first");

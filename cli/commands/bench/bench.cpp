@@ -179,7 +179,7 @@ class Bench {
           std::pair("decimation by vertex removals", DecimateOperation::kVertexRemoval)}) {
       DecimateOptions options;
       options.operation = operation;
-      options.target_ratio = 0.1;
+      options.target.ratio = 0.1;
       const auto run = [&] {
         return timed([&] { return decimate({subject.positions, subject.mesh.origins()}, options); });
       };

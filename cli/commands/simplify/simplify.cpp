@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -24,7 +26,6 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 struct SimplifyOptions {
   std::string operation = "edge-collapse";
-  std::string placement = "optimal";
   std::string boundary = "in-shape";
   std::optional<double> ratio;
   std::optional<std::size_t> faces, vertices;
@@ -32,24 +33,35 @@ struct SimplifyOptions {
   std::string lock;
   std::vector<std::string> attributes;
   bool index_only = false;
-  double max_normal_deviation = DecimateOptions{}.max_normal_deviation / kRadians;
+  double max_normal_deviation = DecimateBounds{}.normal_deviation / kRadians;
 };
 
-/// "the link condition holds 12, …", the most first.
-std::string names_of(const Decimated::Held& held) {
-  std::vector<std::pair<std::size_t, const char*>> all = {
-      {held.link, "the manifold would break"}, {held.fold_over, "a face would fold over"},
-      {held.error, "the error is too large"},  {held.locked, "locked"},
-      {held.boundary, "of the boundary"},      {held.seam, "a seam would break"},
-      {held.criterion, "a bound forbids it"}};
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+struct ReasonText {
+  Reason reason;
+  const char* name;  // in JSON
+  const char* text;
+};
+constexpr ReasonText kReasonTexts[] = {{Reason::kLinkCondition, "link", "the manifold would break"},
+                                       {Reason::kFoldOver, "fold_over", "a face would fold over"},
+                                       {Reason::kErrorBound, "error", "the error is too large"},
+                                       {Reason::kLocked, "locked", "locked"},
+                                       {Reason::kBoundary, "boundary", "of the boundary"},
+                                       {Reason::kSeam, "seam", "a seam would break"},
+                                       {Reason::kCriterion, "criterion", "a bound forbids it"}};
+static_assert(std::size(kReasonTexts) == kReasons.size());
+
+/// "12 (a face would fold over), …", the most first.
+std::string describe(const CountByReason& counts) {
+  std::vector<ReasonText> all(std::begin(kReasonTexts), std::end(kReasonTexts));
+  std::ranges::stable_sort(all, std::greater(), [&](const ReasonText& r) { return counts[r.reason]; });
   std::string text;
-  for (const auto& [count, name] : all)
-    if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " (" + name + ")";
+  for (const ReasonText& r : all)
+    if (counts[r.reason] > 0)
+      text += (text.empty() ? "" : ", ") + grouped(counts[r.reason]) + " (" + r.text + ")";
   return text.empty() ? "nothing" : text;
 }
 
-std::string why(DecimateStop stop, const SimplifyOptions& options, const Decimated::Held& held) {
+std::string why(DecimateStop stop, const SimplifyOptions& options, const CountByReason& blocked) {
   switch (stop) {
     case DecimateStop::kTargetReached:
       return "the target was reached";
@@ -57,39 +69,31 @@ std::string why(DecimateStop stop, const SimplifyOptions& options, const Decimat
       return "the error of " +
              (options.error ? brief(*options.error)
                             : brief(100 * options.relative_error.value_or(0)) + " % of the diagonal") +
-             " holds what is left: " + names_of(held);
+             " holds what is left: " + describe(blocked);
     case DecimateStop::kTimeLimit:
       return "the time was up";
     case DecimateStop::kNoLegalCollapse:
-      return "what is left is illegal: " + names_of(held);
+      return "what is left is illegal: " + describe(blocked);
   }
   return {};
 }
 
-Json to_json(const Decimated::Held& held) {
-  return {{"link", held.link},          {"fold_over", held.fold_over}, {"error", held.error},
-          {"locked", held.locked},      {"boundary", held.boundary},   {"seam", held.seam},
-          {"criterion", held.criterion}};
+std::optional<Length> length_of(const std::optional<double>& absolute,
+                                const std::optional<double>& relative) {
+  if (absolute) return Length::absolute(*absolute);
+  if (relative) return Length::relative(*relative);
+  return std::nullopt;
 }
 
 DecimateOptions decimation_of(const SimplifyOptions& options) {
   DecimateOptions decimation;
-  decimation.max_normal_deviation = options.max_normal_deviation * kRadians;
   if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
   if (options.operation == "vertex-removal") decimation.operation = DecimateOperation::kVertexRemoval;
-  if (options.placement == "midpoint") decimation.placement = CollapsePlacement::kMidpoint;
-  if (options.placement == "endpoint") decimation.placement = CollapsePlacement::kEndpoint;
-  if (options.boundary == "kept") decimation.boundary = DecimateBoundary::kKept;
-  if (options.boundary == "free") decimation.boundary = DecimateBoundary::kFree;
-  if (options.crease_angle) decimation.crease_angle = *options.crease_angle * kRadians;
-  decimation.prune_size = options.prune_size;
-  decimation.prune_relative_size = options.prune_relative_size;
-  decimation.target_faces = options.faces;
-  decimation.target_vertices = options.vertices;
-  decimation.target_ratio = options.ratio;
-  decimation.max_error = options.error;
-  decimation.max_relative_error = options.relative_error;
-  decimation.time_limit = options.time_limit;
+  decimation.target = {options.faces, options.vertices, options.ratio, options.time_limit};
+  if (options.boundary == "kept") decimation.curves.boundary = DecimateBoundary::kKept;
+  if (options.boundary == "free") decimation.curves.boundary = DecimateBoundary::kFree;
+  if (options.crease_angle) decimation.curves.crease_angle = *options.crease_angle * kRadians;
+  decimation.prune_size = length_of(options.prune_size, options.prune_relative_size);
   return decimation;
 }
 
@@ -111,8 +115,8 @@ Result<void> lock_marked(const IndexedFaceSet& mesh, const std::string& name, De
   if (of_points == nullptr && of_faces == nullptr)
     return fail(ErrorCode::kUsage,
                 "--lock " + name + ": neither points nor faces have an attribute of this name");
-  if (of_points != nullptr) decimation.locked_vertices = marked(*of_points);
-  if (of_faces != nullptr) decimation.locked_faces = marked(*of_faces);
+  if (of_points != nullptr) decimation.locked.vertices = marked(*of_points);
+  if (of_faces != nullptr) decimation.locked.faces = marked(*of_faces);
   return {};
 }
 
@@ -131,12 +135,7 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
       !options.time_limit)
     return fail(ErrorCode::kUsage,
                 "say when to stop: --ratio, --faces, --vertices, --error, --relative-error or --time-limit");
-  if (options.operation == "half-edge-collapse" && options.placement != "optimal" &&
-      options.placement != "endpoint")
-    return fail(ErrorCode::kUsage, "a half-edge collapse ends in an endpoint: leave --placement out");
-  if (options.operation == "vertex-removal" && options.placement != "optimal")
-    return fail(ErrorCode::kUsage, "vertex removal moves no points: leave --placement out");
-  const bool points_stay = options.operation != "edge-collapse" || options.placement == "endpoint";
+  const bool points_stay = options.operation != "edge-collapse";
   if (options.index_only && !points_stay)
     return fail(ErrorCode::kUsage,
                 "--index-only leaves all points where they are: add --operation half-edge-collapse");
@@ -153,7 +152,10 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
     mesh = std::move(cut.mesh);
   }
   DecimateOptions decimation = decimation_of(options);
-  VKMESH_TRY(decimation.criteria, criteria.criteria());
+  VKMESH_TRY(decimation.weights, criteria.weights());
+  decimation.bounds = criteria.bounds();
+  decimation.bounds.error = length_of(options.error, options.relative_error);
+  decimation.bounds.normal_deviation = options.max_normal_deviation * kRadians;
   if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
   VKMESH_TRY(const SimplifyAttributes attributes,
              SimplifyAttributes::of(job, mesh, options.attributes, points_stay));
@@ -187,25 +189,24 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   }
   const double ratio =
       faces == 0 ? 1.0 : static_cast<double>(output.face_count()) / static_cast<double>(faces);
-  job.json()["result"] = {
-      {"stop", name_of(decimated.stop)},
-      {"operation", options.operation},
-      {"error", decimated.error},
-      {"relative_error", decimated.relative_error},
-      {"attributes", attributes.names()},
-      {"attribute_error", decimated.attribute_error},
-      {"ratio", ratio},
-      {"collapses", decimated.collapses},
-      {"pruned_components", decimated.pruned_components},
-      {"pruned_faces", decimated.pruned_faces},
-      {"rejected_link", decimated.rejected_link},
-      {"rejected_fold_over", decimated.rejected_fold_over},
-      {"rejected_error", decimated.rejected_error},
-      {"rejected_locked", decimated.rejected_locked},
-      {"rejected_seam", decimated.rejected_seam},
-      {"rejected_criterion", decimated.rejected_criterion},
-      {"held", to_json(decimated.held)},
-      {"distance_bound", decimated.distance_bound ? Json(*decimated.distance_bound) : Json(nullptr)}};
+  Json blocked;
+  for (const ReasonText& r : kReasonTexts) blocked[r.name] = decimated.blocked[r.reason];
+  Json& result = job.json()["result"];
+  result = {{"stop", name_of(decimated.stop)},
+            {"operation", options.operation},
+            {"error", decimated.error},
+            {"relative_error", decimated.relative_error},
+            {"attributes", attributes.names()},
+            {"attribute_error", decimated.attribute_error},
+            {"ratio", ratio},
+            {"collapses", decimated.collapses},
+            {"pruned_components", decimated.pruned_components},
+            {"pruned_faces", decimated.pruned_faces},
+            {"held", blocked},
+            {"distance_bound", decimated.distance_bound ? Json(*decimated.distance_bound) : Json(nullptr)}};
+  for (const ReasonText& r : kReasonTexts)
+    if (r.reason != Reason::kBoundary)  // counts as locked
+      result[std::string("rejected_") + r.name] = decimated.rejected[r.reason];
   job.row("simplified", "to " + brief(100 * ratio) + " % of " + count_of(faces, "triangle") +
                             "; largest error " + brief(decimated.error) + " in units of the file, " +
                             brief(100 * decimated.relative_error) + " % of the diagonal");
@@ -218,13 +219,14 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   if (!isolated.empty())
     job.row("isolated",
             count_of(isolated.size(), "point") + " that no face uses kept (--drop-isolated leaves them out)");
-  job.row("stopped", why(decimated.stop, options, decimated.held));
-  job.row("collapses", grouped(decimated.collapses) + " done; refused " + grouped(decimated.rejected_link) +
-                           " that would break the manifold, " + grouped(decimated.rejected_fold_over) +
-                           " that would fold a face over" +
-                           (attributes.names().empty()
-                                ? std::string()
-                                : ", " + grouped(decimated.rejected_seam) + " that would break a seam"));
+  job.row("stopped", why(decimated.stop, options, decimated.blocked));
+  job.row("collapses",
+          grouped(decimated.collapses) + " done; refused " +
+              grouped(decimated.rejected[Reason::kLinkCondition]) + " that would break the manifold, " +
+              grouped(decimated.rejected[Reason::kFoldOver]) + " that would fold a face over" +
+              (attributes.names().empty()
+                   ? std::string()
+                   : ", " + grouped(decimated.rejected[Reason::kSeam]) + " that would break a seam"));
   std::string names;
   for (const std::string& name : attributes.names()) names += (names.empty() ? "" : ", ") + name;
   if (!names.empty())
@@ -271,12 +273,6 @@ void add_simplify(CLI::App& app, Program& program) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"edge-collapse", "half-edge-collapse", "vertex-removal"}));
   command
-      ->add_option(
-          "--placement", options->placement,
-          "Where an edge collapse puts its point: optimal (least error, default), midpoint, endpoint")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"optimal", "midpoint", "endpoint"}));
-  command
       ->add_option("--boundary", options->boundary,
                    "kept: boundary points stay; in-shape (default): the boundary's shape counts in\n"
                    "the error; free: it may shrink")
@@ -310,11 +306,12 @@ void add_simplify(CLI::App& app, Program& program) {
   command->add_option("--vertices", options->vertices, "Stop at this number of points")
       ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
       ->type_name("N");
-  command
-      ->add_option("--relative-error", options->relative_error,
-                   "Do no collapse of a larger error, as a share of the bounding box's diagonal")
-      ->type_name("E")
-      ->check(number_between(0, std::numeric_limits<double>::max()));
+  CLI::Option* relative_error =
+      command
+          ->add_option("--relative-error", options->relative_error,
+                       "Do no collapse of a larger error, as a share of the bounding box's diagonal")
+          ->type_name("E")
+          ->check(number_between(0, std::numeric_limits<double>::max()));
   command->add_option("--time-limit", options->time_limit, "Stop after this many seconds of simplifying")
       ->type_name("S")
       ->check(number_between(0, std::numeric_limits<double>::max()));
@@ -323,7 +320,8 @@ void add_simplify(CLI::App& app, Program& program) {
                    "Do no collapse of a larger error, in units of the file's coordinates: the\n"
                    "root of the mean squared distance to the planes of the faces a point stands for")
       ->type_name("E")
-      ->check(number_between(0, std::numeric_limits<double>::max()));
+      ->check(number_between(0, std::numeric_limits<double>::max()))
+      ->excludes(relative_error);
   command
       ->add_option("--max-normal-deviation", options->max_normal_deviation,
                    "Do no collapse that turns a remaining face by more than this, in degrees;\n"

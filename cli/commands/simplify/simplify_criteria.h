@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,17 @@
 namespace vkmesh::cli {
 
 /// What was given on the command line.
-struct SimplifyCriteria {
-  std::vector<std::string> weights;  // NAME=WEIGHT
-  DecimateCriteria bounds;           // angles in degrees
-
+class SimplifyCriteria {
+ public:
   /// Errors: kUsage, for a name or a weight that is none.
-  [[nodiscard]] Result<DecimateCriteria> criteria() const;
+  [[nodiscard]] Result<DecimateWeights> weights() const;
+  [[nodiscard]] DecimateBounds bounds() const;
+
+ private:
+  friend void add_simplify_criteria(CLI::App&, const std::shared_ptr<SimplifyCriteria>&);
+  std::vector<std::string> weights_;  // NAME=WEIGHT
+  DecimateBounds bounds_;             // angles in degrees
+  std::optional<double> distance_, relative_distance_, edge_length_;
 };
 
 /// The options that fill `given`, which they keep alive.

@@ -1,25 +1,25 @@
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
-#include <tuple>
 
 #include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/decimation/decimate_index_buffer.h>
+
+#include "base/distinct_rows.h"
+#include "decimation/setup/check_options.h"
 
 namespace vkmesh {
 namespace {
 
 /// For each point the first one at the same place.
 std::vector<std::uint32_t> first_at_place(std::span<const Vec3> points) {
-  const auto place = [&](std::uint32_t v) { return std::tie(points[v].x, points[v].y, points[v].z); };
-  std::vector<std::uint32_t> order(points.size()), first(points.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return place(a) != place(b) ? place(a) < place(b) : a < b;
-  });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && place(order[i]) == place(order[i - 1]) ? first[order[i - 1]] : order[i];
+  std::vector<std::uint32_t> first(points.size()), first_of_row;
+  std::vector<Vec3> rows;
+  detail::DistinctRows<3> distinct;
+  for (std::uint32_t v = 0; v < points.size(); ++v) {
+    const std::uint32_t row = distinct.number(&points[v].x, rows);
+    if (row == first_of_row.size()) first_of_row.push_back(v);
+    first[v] = first_of_row[row];
+  }
   return first;
 }
 
@@ -32,14 +32,9 @@ Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const s
   if (indices.size() % 3 != 0) return usage("decimation takes three indices a triangle");
   for (const std::uint32_t v : indices)
     if (v >= points.size()) return usage("an index names no vertex");
-  for (const std::uint32_t v : options.locked_vertices)
-    if (v >= points.size()) return usage("a locked vertex is not of the mesh");
-  for (const std::uint32_t h : options.locked_edges)
-    if (h >= indices.size()) return usage("a locked edge is not of the mesh");
-  for (const std::uint32_t f : options.locked_faces)
-    if (f >= indices.size() / 3) return usage("a locked face is not of the mesh");
   for (const DecimateAttribute& a : options.attributes)
     if (!a.corners.empty()) return usage("an attribute of an index buffer has one value for each vertex");
+  VKMESH_CHECK(detail::check_options(options, points.size(), indices.size()));
   for (const Vec3& p : points)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
@@ -58,30 +53,22 @@ Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const s
 
   DecimateOptions welded = options;
   welded.corner_groups = vertices;
-  for (DecimateAttribute& a : welded.attributes) {
-    if (a.components == 0 || a.values.size() != points.size() * a.components)
-      return usage("an attribute of an index buffer has one value for each vertex");
-    a.corners = vertices;
-  }
-  for (std::uint32_t& v : welded.locked_vertices) v = first[v];
-  welded.locked_faces.clear();
-  for (const std::uint32_t f : options.locked_faces) {
+  for (DecimateAttribute& a : welded.attributes) a.corners = vertices;
+  for (std::uint32_t& v : welded.locked.vertices) v = first[v];
+  welded.locked.faces.clear();
+  for (const std::uint32_t f : options.locked.faces) {
     if (new_face[f] != kInvalid)
-      welded.locked_faces.push_back(new_face[f]);
+      welded.locked.faces.push_back(new_face[f]);
     else
-      for (std::size_t i = 0; i < 3; ++i) welded.locked_vertices.push_back(first[indices[3 * f + i]]);
+      for (std::size_t i = 0; i < 3; ++i) welded.locked.vertices.push_back(first[indices[3 * f + i]]);
   }
-  welded.locked_edges.clear();
-  for (const std::uint32_t h : options.locked_edges)
+  welded.locked.edges.clear();
+  for (const std::uint32_t h : options.locked.edges)
     for (const std::uint32_t c : {h, h % 3 == 2 ? h - 2 : h + 1})
-      welded.locked_vertices.push_back(first[indices[c]]);
+      welded.locked.vertices.push_back(first[indices[c]]);
 
   VKMESH_TRY(const Decimated d, decimate(TriangleSurface{points, corners}, welded, progress));
-  DecimatedIndexBuffer result;
-  result.stop = d.stop;
-  result.error = d.error;
-  result.relative_error = d.relative_error;
-  result.attribute_error = d.attribute_error;
+  DecimatedIndexBuffer result{d, {}, {}};
   result.indices.reserve(d.attributes.corners.size());
   for (const std::uint32_t w : d.attributes.corners)
     result.indices.push_back(vertices[d.attributes.source_corner[w]]);

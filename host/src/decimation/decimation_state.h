@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -21,8 +22,15 @@ class Criteria;
 struct Limits {
   std::size_t faces = 0, vertices = 0;
   double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
-  double seconds = std::numeric_limits<double>::infinity();
+  std::chrono::steady_clock::time_point begun;
+  double seconds = std::numeric_limits<double>::infinity();  // from then on
   float cos_deviation = 0;
+};
+
+/// From how many faces on work is shared out: of each partition whose edges are collapsed, and of each range
+/// that is coarsened.
+struct PartitionSizes {
+  std::size_t partition_faces = std::size_t{1} << 16, range_faces = std::size_t{3} << 16;
 };
 
 struct Event {
@@ -56,15 +64,14 @@ struct Outcome {
 struct DecimationState {
   CollapseMesh& mesh;
   const Limits& limits;
-  std::size_t faces, vertices;  // that are left
-  bool keep_events;
-  Outcome outcome;
+  std::size_t faces = 0, vertices = 0;  // that are left
+  bool keep_events = false;
+  Outcome outcome = {};
   AttributeQuadrics* attributes = nullptr;  // none
   Criteria* criteria = nullptr;             // none
   bool boundary_kept = false;
-  double mean_weight = 0;                              // of all vertices at first
-  std::size_t partition_faces = std::size_t{1} << 16;  // of partitions that are decimated side by side
-  std::size_t range_faces = std::size_t{3} << 16;      // of ranges that are coarsened so
+  double mean_weight = 0;  // of all vertices at first
+  PartitionSizes sizes = {};
 
   [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
 };
@@ -74,8 +81,11 @@ class PartitionState {
  public:
   explicit PartitionState(const DecimationState& all)
       : limits_(all.limits),
-        state{all.mesh,          limits_,        0, 0, all.keep_events, {}, nullptr, nullptr,
-              all.boundary_kept, all.mean_weight} {
+        state{.mesh = all.mesh,
+              .limits = limits_,
+              .keep_events = all.keep_events,
+              .boundary_kept = all.boundary_kept,
+              .mean_weight = all.mean_weight} {
     limits_.faces = 1;  // a removal takes two
     limits_.vertices = 0;
   }
@@ -107,6 +117,11 @@ class PartitionState {
 [[nodiscard]] inline std::size_t spread_evenly(std::uint32_t i, std::size_t all) {
   return static_cast<std::size_t>((std::uint64_t{i * 0x9e3779b1u} * all) >> 32);
 }
+
+/// As `decimate`; for tests, in partitions so small that any surface has several.
+[[nodiscard]] Result<Decimated> decimate_in_partitions(
+    const TriangleSurface& surface, const DecimateOptions& options,
+    const PartitionSizes& sizes = {.partition_faces = 32, .range_faces = 512}, const Progress& progress = {});
 
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 

@@ -495,8 +495,6 @@ class EdgeCollapses {
     touched_.push_back(merge.kept);
     if (share_->partition.is_interface()) share_->partition.merge(mesh_, merge.gone, merge.kept, merge.ring);
     for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
-    if constexpr (Placement::kMayFall == MayFall::kAll)
-      refresh(merge.kept, rings.p.size() + rings.q.size() - 2);
     if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(merge.kept);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) put_moved();
     revive(merge.kept, rings);

@@ -36,16 +36,8 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   result.relative_error = frame.diagonal > 0 ? result.error / frame.diagonal : 0;
   if (frame.diagonal > 0)
     result.attribute_error = std::sqrt(outcome.attribute_error2) / (frame.diagonal * frame.scale);
-  const CountByReason &rejected = outcome.rejected, &blocked = outcome.blocked;
-  result.rejected_link = rejected[Reason::kLinkCondition];
-  result.rejected_fold_over = rejected[Reason::kFoldOver];
-  result.rejected_error = rejected[Reason::kErrorBound];
-  result.rejected_locked = rejected[Reason::kLocked];
-  result.rejected_seam = rejected[Reason::kSeam];
-  result.rejected_criterion = rejected[Reason::kCriterion];
-  result.held = {blocked[Reason::kLinkCondition], blocked[Reason::kFoldOver], blocked[Reason::kErrorBound],
-                 blocked[Reason::kLocked],        blocked[Reason::kBoundary], blocked[Reason::kSeam],
-                 blocked[Reason::kCriterion]};
+  result.rejected = outcome.rejected;
+  result.blocked = outcome.blocked;
   result.history.reserve(outcome.events.size());
   for (const Event& e : outcome.events)
     result.history.push_back(

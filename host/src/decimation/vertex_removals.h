@@ -51,7 +51,6 @@ class VertexRemovals {
   }
 
   static constexpr std::size_t kStep = Queue::kExact ? 1 : 512;
-  static constexpr bool kMayCoarsen = !Queue::kExact;
 
   /// All vertices with their costs.
   void fill() {

@@ -165,7 +165,7 @@ bool agrees(const Channel& channel, std::span<const std::uint32_t> point_of,
 }
 
 Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& options) {
-  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
+  if (!(options.tolerance.value >= 0) || !std::isfinite(options.tolerance.value))
     return fail(ErrorCode::kUsage, "the tolerance of welding must be a finite number that is not negative");
   if (mesh.points.size() >= kInvalid)
     return fail(ErrorCode::kUnsuitable, "the mesh has more than 2^32 - 2 points");
@@ -176,7 +176,7 @@ Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& option
   for (const Vec3& p : mesh.points)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorCode::kUsage, "a point has a coordinate that is not finite");
-  const double tolerance = options.relative ? options.tolerance * diagonal(mesh.points) : options.tolerance;
+  const double tolerance = options.tolerance.in_units(diagonal(mesh.points));
 
   Welded result;
   result.point_of.resize(mesh.points.size());

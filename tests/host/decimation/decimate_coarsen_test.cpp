@@ -17,7 +17,6 @@
 
 #include "decimation/decimate_support.h"
 #include "decimation/decimation_state.h"
-#include "decimation/order/collapse_order.h"
 #include "decimation/parallel/coarsen.h"
 #include "decimation/parallel/coarsen_batch.h"
 #include "decimation/setup/initial_quadrics.h"
@@ -249,8 +248,8 @@ TEST_CASE("a surface is coarsened where it is far from its target, the more the 
     detail::Limits limits = any_angle();
     limits.faces = mesh.face_count() / divisor;
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    state.partition_faces = 128;
-    state.range_faces = 1024;
+    state.sizes.partition_faces = 128;
+    state.sizes.range_faces = 1024;
     change(state, limits);
     detail::coarsen_if_far_from_target(state);
     check(mesh);
@@ -266,7 +265,7 @@ TEST_CASE("a surface is coarsened where it is far from its target, the more the 
   CHECK(left_of(grid, 7, as_is) == all);
   CHECK(near < all * 2 / 3);
   // What is at the ends of ranges goes, too.
-  const std::size_t in_one = left_of(grid, 8, [](auto& state, auto&) { state.range_faces = 1 << 20; });
+  const std::size_t in_one = left_of(grid, 8, [](auto& state, auto&) { state.sizes.range_faces = 1 << 20; });
   CHECK(near < in_one * 21 / 20);
   CHECK(left_of(grid, 16, as_is) == near);
   const std::size_t far = left_of(grid, 100, as_is);
@@ -274,7 +273,8 @@ TEST_CASE("a surface is coarsened where it is far from its target, the more the 
   CHECK(left_of(grid, 10000, as_is) < far);
   CHECK(left_of(grid, 8, [](auto& state, auto&) { state.keep_events = true; }) == all);
   CHECK(left_of(grid, 8, [](auto&, auto& limits) { limits.error2 = 1; }) == all);
-  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.partition_faces = state.mesh.face_count(); }) == all);
+  CHECK(left_of(grid, 8, [](auto& state, auto&) { state.sizes.partition_faces = state.mesh.face_count(); }) ==
+        all);
   // It stops where it is told to.
   for (const std::size_t rest : {std::size_t{1}, all * 4 / 5, all - 10}) {
     CollapseMesh mesh = test::collapse_mesh_of(test::fitted(grid));
@@ -297,8 +297,8 @@ TEST_CASE("ranges are coarsened side by side as one after another", "[decimate]"
     detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
     const detail::Limits limits = any_angle();
     detail::DecimationState state{mesh, limits, mesh.face_count(), mesh.apex(), false, {}};
-    state.partition_faces = 1024;
-    state.range_faces = 2048;
+    state.sizes.partition_faces = 1024;
+    state.sizes.range_faces = 2048;
     tbb::task_arena(threads).execute([&] { detail::coarsen_if_far_from_target(state); });
     CHECK(state.faces < mesh.face_count() * 2 / 3);
     std::vector<std::uint32_t> words;
@@ -324,12 +324,10 @@ TEST_CASE("decimation: what is far from its target is coarsened at first, on any
   IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
   test::jitter(mesh, 0.05f, 1);
   for (const DecimateOptions& way : test::ways()) {
-    if (way.placement == CollapsePlacement::kMidpoint) continue;  // in the exact order
     const auto on = [&](int threads, const DecimateOptions& options) {
       tbb::task_arena arena(threads);
       return arena.execute([&] {
-        auto result =
-            detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kPartitioned);
+        auto result = detail::decimate_in_partitions({mesh.points, mesh.corners}, options);
         REQUIRE(result);
         REQUIRE(validate(result->mesh));
         return std::move(*result);
@@ -341,7 +339,7 @@ TEST_CASE("decimation: what is far from its target is coarsened at first, on any
     };
     for (const double ratio : {0.0, 0.1, 0.2}) {
       DecimateOptions options = way;
-      options.target_ratio = ratio;
+      options.target.ratio = ratio;
       const Decimated one = on(1, options);
       for (const int threads : {2, 3, 8}) CHECK(same(on(threads, options), one));
       // The order tells in a history, and where an error is promised.
@@ -350,7 +348,7 @@ TEST_CASE("decimation: what is far from its target is coarsened at first, on any
       CHECK(same(in_order, one) == (ratio > 0.125));
       if (in_order.stop == DecimateStop::kTargetReached) CHECK(one.stop == DecimateStop::kTargetReached);
       options.keep_history = false;
-      options.max_relative_error = 10;
+      options.bounds.error = Length::relative(10);
       CHECK(same(on(1, options), in_order));
     }
   }

@@ -26,7 +26,7 @@
 #include "decimation/collapse_neighbourhood.h"
 #include "decimation/cost/tangential_drift.h"
 #include "decimation/decimate_support.h"
-#include "decimation/order/collapse_order.h"
+#include "decimation/decimation_state.h"
 #include "math/triangle_distance.h"
 #include "support/data.h"
 #include "support/shapes.h"
@@ -158,7 +158,6 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
     if (way.operation == DecimateOperation::kVertexRemoval) continue;  // histories tell no triangulation
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
       const bool partitioned = seed >= 4;
-      const auto order = partitioned ? detail::CollapseOrder::kPartitioned : detail::CollapseOrder::kFast;
       const std::vector<IndexedFaceSet> shapes =
           partitioned ? std::vector{test::icosphere(2), test::torus(14, 11), test::grid(14, 13),
                                     test::both(test::icosphere(1), test::torus(12, 9))}
@@ -169,9 +168,11 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
         if (seed > 0) test::jitter(mesh, 0.1f * static_cast<float>(seed), seed);
         DecimateOptions options = way;
         options.keep_history = true;
-        options.max_normal_deviation = seed % 2 == 0 ? 1.3 : 2.5;
-        options.boundary = seed == 2 ? DecimateBoundary::kFree : DecimateBoundary::kInShape;
-        const auto done = detail::decimate({mesh.points, mesh.corners}, options, order);
+        options.bounds.normal_deviation = seed % 2 == 0 ? 1.3 : 2.5;
+        options.curves.boundary = seed == 2 ? DecimateBoundary::kFree : DecimateBoundary::kInShape;
+        const TriangleSurface surface{mesh.points, mesh.corners};
+        const auto done =
+            partitioned ? detail::decimate_in_partitions(surface, options) : decimate(surface, options);
         REQUIRE(done);
         const Decimated& result = *done;
         REQUIRE(validate(result.mesh));
@@ -179,7 +180,7 @@ TEST_CASE("decimation: each collapse of a history is legal, and the history lead
         CHECK(result.stop == DecimateStop::kNoLegalCollapse);
         CHECK(result.history.size() == result.collapses);
         CHECK(result.collapses > 3);
-        Replay replay(mesh, options.max_normal_deviation);
+        Replay replay(mesh, options.bounds.normal_deviation);
         std::vector<std::uint32_t> stands(mesh.points.size());
         std::iota(stands.begin(), stands.end(), 0u);
         for (const Collapse<Vec3>& c : result.history) {
@@ -213,13 +214,12 @@ TEST_CASE("decimation: partitions side by side do the same on any number of thre
     if (way.operation == DecimateOperation::kVertexRemoval) continue;  // of one partition
     for (const double ratio : {0.5, 0.1, 0.0}) {
       DecimateOptions options = way;
-      options.target_ratio = ratio;
+      options.target.ratio = ratio;
       options.keep_history = true;
       const auto on = [&](int threads) {
         tbb::task_arena arena(threads);
         return arena.execute([&] {
-          auto result =
-              detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kPartitioned);
+          auto result = detail::decimate_in_partitions({mesh.points, mesh.corners}, options);
           REQUIRE(result);
           REQUIRE(validate(result->mesh));
           return std::move(*result);
@@ -233,11 +233,8 @@ TEST_CASE("decimation: partitions side by side do the same on any number of thre
         CHECK(one.mesh.face_count() <= target);
         CHECK(one.mesh.face_count() + 2 > target);
       } else {
-        const auto& held = one.held;
-        CHECK(held.link + held.fold_over > 0);
-        CHECK(held.link + held.fold_over + held.error + held.locked + held.boundary + held.seam +
-                  held.criterion ==
-              one.mesh.edge_count());
+        CHECK(one.blocked[Reason::kLinkCondition] + one.blocked[Reason::kFoldOver] > 0);
+        CHECK(test::sum(one.blocked) == one.mesh.edge_count());
       }
       for (const int threads : {2, 3, 8}) {
         const Decimated many = on(threads);
@@ -245,7 +242,7 @@ TEST_CASE("decimation: partitions side by side do the same on any number of thre
         CHECK(many.positions == one.positions);
         CHECK(many.vertex_map == one.vertex_map);
         CHECK(many.collapses == one.collapses);
-        CHECK(many.rejected_fold_over == one.rejected_fold_over);
+        CHECK(many.rejected[Reason::kFoldOver] == one.rejected[Reason::kFoldOver]);
         CHECK(std::ranges::equal(many.history, one.history, [](const auto& a, const auto& b) {
           return a.kept == b.kept && a.removed == b.removed && a.position == b.position && a.faces == b.faces;
         }));
@@ -256,15 +253,14 @@ TEST_CASE("decimation: partitions side by side do the same on any number of thre
 
 TEST_CASE("decimation: flat sheets, cubes and tetrahedra, each way", "[decimate]") {
   for (DecimateOptions options : ways()) {
-    options.target_faces = 0;
+    options.target.faces = 0;
     const Decimated tetrahedron = run(test::tetrahedron(), options);
     CHECK(tetrahedron.stop == DecimateStop::kNoLegalCollapse);
     CHECK(tetrahedron.collapses == 0);
-    if (options.placement == CollapsePlacement::kMidpoint) continue;  // would round corners off
 
     const Decimated sheet = run(test::grid(12, 9), [&] {
       DecimateOptions o = options;
-      o.target_faces = 2;
+      o.target.faces = 2;
       return o;
     }());
     REQUIRE(sheet.mesh.face_count() == 2);
@@ -275,7 +271,7 @@ TEST_CASE("decimation: flat sheets, cubes and tetrahedra, each way", "[decimate]
       CHECK(p.y == Approx(p.y < 4 ? 0 : 9).margin(1e-4));
     }
     for (const float shift : {0.0f, 1000.0f, 1.0e6f}) {
-      options.target_faces = 12;
+      options.target.faces = 12;
       const Decimated cube = run(cut_cube(shift), options);
       REQUIRE(cube.mesh.face_count() == 12);
       CHECK(cube.positions.size() == 8);
@@ -292,11 +288,11 @@ TEST_CASE("decimation: locked vertices and a boundary that is kept stay where th
     IndexedFaceSet mesh = test::grid(9, 9);
     test::jitter(mesh, 0.2f, 3);
     const HalfEdgeMesh input = half_edges(mesh);
-    options.boundary = DecimateBoundary::kKept;
-    options.locked_vertices = {44, 55};
+    options.curves.boundary = DecimateBoundary::kKept;
+    options.locked.vertices = {44, 55};
     const Decimated result = run(input, mesh.points, options);
     CHECK(result.collapses > 20);
-    CHECK(result.rejected_locked > 0);
+    CHECK(result.rejected[Reason::kLocked] > 0);
     for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
       if (!input.is_boundary(VertexId(v)) && v != 44 && v != 55) continue;
       REQUIRE(std::binary_search(result.source_vertex.begin(), result.source_vertex.end(), v));
@@ -311,47 +307,46 @@ TEST_CASE("decimation: each rule to stop by", "[decimate]") {
   test::jitter(mesh, 0.01f, 2);
   for (DecimateOptions options : ways()) {
     DecimateOptions by = options;
-    by.target_vertices = 100;
+    by.target.vertices = 100;
     Decimated result = run(mesh, by);
     CHECK(result.stop == DecimateStop::kTargetReached);
     CHECK(result.mesh.vertex_count() == 100);
     by = options;
-    by.target_ratio = 0.25;
+    by.target.ratio = 0.25;
     result = run(mesh, by);
     CHECK(result.stop == DecimateStop::kTargetReached);
     CHECK(result.mesh.face_count() == mesh.face_count() / 4);
-    by.target_faces = mesh.face_count() / 2;  // the first that is met
+    by.target.faces = mesh.face_count() / 2;  // the first that is met
     CHECK(run(mesh, by).mesh.face_count() == mesh.face_count() / 2);
     by = options;
-    by.time_limit = 0;
+    by.target.seconds = 0;
     result = run(mesh, by);
     CHECK(result.stop == DecimateStop::kTimeLimit);
     CHECK(result.collapses == 0);
     for (const double bound : {0.002, 0.01}) {
       by = options;
-      by.max_relative_error = bound;
+      by.bounds.error = Length::relative(bound);
       result = run(mesh, by);
       CHECK(result.stop == DecimateStop::kErrorBound);
-      CHECK(result.rejected_error > 0);
+      CHECK(result.rejected[Reason::kErrorBound] > 0);
       CHECK(result.relative_error <= bound);
       CHECK(result.relative_error > 0.5 * bound);
-      by.max_relative_error.reset();
-      by.max_error = result.error;
+      by.bounds.error = Length::absolute(result.error);
       CHECK(run(mesh, by).error <= result.error);
     }
     for (const double wrong : {-1.0, std::nan("")}) {
       by = options;
-      by.max_relative_error = wrong;
+      by.bounds.error = Length::relative(wrong);
       CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
       by = options;
-      by.target_ratio = wrong;
+      by.target.ratio = wrong;
       CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
       by = options;
-      by.time_limit = wrong;
+      by.target.seconds = wrong;
       CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
     }
     by = options;
-    by.locked_vertices = {static_cast<std::uint32_t>(mesh.points.size())};
+    by.locked.vertices = {static_cast<std::uint32_t>(mesh.points.size())};
     CHECK_FALSE(decimate(half_edges(mesh), mesh.points, by));
   }
 }
@@ -365,7 +360,7 @@ TEST_CASE("decimation: detail of a thousandth a million away, in double precisio
     far.push_back(near.back() + DVec3(1e6, -1e6, 1e6));  // exact: steps of 2^-20
   }
   for (DecimateOptions options : ways()) {
-    options.target_faces = 200;
+    options.target.faces = 200;
     const auto a = run(half_edges(sphere), near, options), b = run(half_edges(sphere), far, options);
     CHECK(a.source_vertex == b.source_vertex);
     CHECK(a.error == b.error);
@@ -387,8 +382,8 @@ TEST_CASE("decimation: shuffled input is put in order, and comes out in its own"
   for (std::size_t v = 0; v < place.size(); ++v) shuffled.points[place[v]] = mesh.points[v];
   for (std::uint32_t& c : shuffled.corners) c = place[c];
   for (DecimateOptions options : ways()) {
-    options.target_faces = 2000;
-    options.locked_vertices = {7, 40000};
+    options.target.faces = 2000;
+    options.locked.vertices = {7, 40000};
     const auto result = decimate(TriangleSurface{shuffled.points, shuffled.corners}, options);
     REQUIRE(result);
     REQUIRE(validate(result->mesh));
@@ -434,7 +429,7 @@ TEST_CASE("decimation: every manifold mesh of the CGAL collection, each way and 
       for (const double ratio : {0.5, 0.1, 0.02, 0.005}) {
         if (test::kSanitized && ratio != 0.1) continue;
         INFO(path << " to " << ratio);
-        options.target_ratio = ratio;
+        options.target.ratio = ratio;
         const Decimated result = run(*input, triangles->mesh.points, options);
         const auto valid = validate(result.mesh);
         if (!valid) FAIL(valid.error().describe());
@@ -472,8 +467,8 @@ TEST_CASE("decimation: fandisk to 5 % keeps every sharp edge within 0.1 % of its
   };
   const HalfEdgeMesh input = half_edges(mesh);
   DecimateOptions options;
-  options.target_ratio = 0.05;
-  options.crease_angle = 40 * std::numbers::pi / 180;
+  options.target.ratio = 0.05;
+  options.curves.crease_angle = 40 * std::numbers::pi / 180;
   const Decimated result = run(input, mesh.points, options);
   REQUIRE(result.mesh.face_count() <= mesh.face_count() / 20);
   // What is left of a sharp edge may be bent a little less.

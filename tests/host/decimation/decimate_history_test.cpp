@@ -16,7 +16,7 @@
 #include <vkmesh/decimation/decimate.h>
 
 #include "decimation/decimate_support.h"
-#include "decimation/order/collapse_order.h"
+#include "decimation/decimation_state.h"
 #include "support/data.h"
 #include "support/shapes.h"
 
@@ -175,10 +175,9 @@ TEST_CASE("decimation: a history leads to each state on the way, with attributes
     const Input input = with_random_seams(shape(seed), seed + 1);
     for (DecimateOptions options : ways())
       for (const bool with_attributes : {false, true}) {
-        CAPTURE(seed, static_cast<int>(options.operation), static_cast<int>(options.placement),
-                with_attributes);
+        CAPTURE(seed, static_cast<int>(options.operation), with_attributes);
         options.keep_history = true;
-        options.max_normal_deviation = 2.0;
+        options.bounds.normal_deviation = 2.0;
         if (with_attributes) input.add_to(options);
         const Decimated whole = run(input.mesh, options);
         REQUIRE(whole.history.size() > 20);
@@ -191,7 +190,7 @@ TEST_CASE("decimation: a history leads to each state on the way, with attributes
           player.step();
           if (done % 16 != 1) continue;
           DecimateOptions until = options;
-          until.target_vertices = input.mesh.points.size() - done;
+          until.target.vertices = input.mesh.points.size() - done;
           const Decimated part = run(input.mesh, until);
           REQUIRE(part.collapses == done);
           check_same(player, part);
@@ -223,7 +222,7 @@ TEST_CASE("decimation: a point that has moved keeps its values where another joi
     player.step();
     if (!stays) continue;
     ++joined;
-    options.target_vertices = mesh.points.size() - done;
+    options.target.vertices = mesh.points.size() - done;
     check_same(player, run(mesh, options));
   }
   CHECK(joined > 3);

@@ -17,7 +17,6 @@
 #include "decimation/decimate_support.h"
 #include "decimation/decimation_state.h"
 #include "decimation/edge_collapses.h"
-#include "decimation/order/collapse_order.h"
 #include "decimation/order/collapse_queues.h"
 #include "decimation/parallel/coarsen.h"
 #include "decimation/parallel/partition.h"
@@ -199,7 +198,7 @@ struct Partitioned {
     detail::sum_quadrics(mesh, {10, 0, -1, 0, nullptr});
     limits.cos_deviation = std::cos(1.3f);
     limits.faces = to_faces;
-    state.partition_faces = partition_faces;
+    state.sizes.partition_faces = partition_faces;
   }
 
   CollapseMesh mesh;
@@ -333,7 +332,7 @@ TEST_CASE("each half of an edge knows whether it is at the interface before part
 
 TEST_CASE("what has gone before a surface is divided is on no interface", "[decimate]") {
   Partitioned all(test::grid(60, 22), 1, 300);
-  all.state.range_faces = 1 << 20;
+  all.state.sizes.range_faces = 1 << 20;
   detail::coarsen_if_far_from_target(all.state);
   REQUIRE(all.state.faces < all.mesh.face_count() * 3 / 4);
   const std::vector<std::uint8_t> labels = detail::partition_kd(all.mesh, 4);
@@ -355,10 +354,9 @@ TEST_CASE("what was pruned is of no partition", "[decimate]") {
   IndexedFaceSet small = shape;
   for (std::size_t v = shape.points.size() - 30; v < shape.points.size(); ++v) small.points[v] *= 0.1f;
   DecimateOptions options;
-  options.prune_relative_size = 0.25;
-  options.target_ratio = 0.1;
-  const auto done =
-      detail::decimate({small.points, small.corners}, options, detail::CollapseOrder::kPartitioned);
+  options.prune_size = Length::relative(0.25);
+  options.target.ratio = 0.1;
+  const auto done = detail::decimate_in_partitions({small.points, small.corners}, options);
   REQUIRE(done);
   REQUIRE(validate(done->mesh));
   CHECK(done->pruned_components == 1);
@@ -390,13 +388,10 @@ TEST_CASE("a history of partitions has at any time done as much in each", "[deci
   test::jitter(half, 0.05f, 1);
   const IndexedFaceSet mesh = test::both(half, half, {3.0f, 0.0f, 0.0f});
   for (DecimateOptions options : test::ways()) {
-    if (options.operation == DecimateOperation::kVertexRemoval ||
-        options.placement == CollapsePlacement::kMidpoint)
-      continue;  // of one partition
+    if (options.operation == DecimateOperation::kVertexRemoval) continue;  // of one partition
     options.keep_history = true;
-    options.target_ratio = 0.2;
-    const auto done =
-        detail::decimate({mesh.points, mesh.corners}, options, detail::CollapseOrder::kPartitioned);
+    options.target.ratio = 0.2;
+    const auto done = detail::decimate_in_partitions({mesh.points, mesh.corners}, options);
     REQUIRE(done);
     std::ptrdiff_t ahead = 0, most = 0;
     for (const Collapse<Vec3>& c : done->history) {

@@ -60,12 +60,12 @@ TEST_CASE("decimation: small components are pruned, and the largest stays", "[de
   }
   DecimateOptions options;
   options.operation = operation;
-  options.target_faces = 300;
+  options.target.faces = 300;
   const Decimated kept = run(mesh, options);
   CHECK(kept.stop == DecimateStop::kNoLegalCollapse);  // a ball has four faces at least, a sheet one
   CHECK(kept.mesh.face_count() >= 1500 * 4 + 1500);
 
-  options.prune_size = 0.05;  // a ball's box has 0.029, a sheet's 0.022
+  options.prune_size = Length::absolute(0.05);  // a ball's box has 0.029, a sheet's 0.022
   const Decimated pruned = run(mesh, options);
   CHECK(pruned.pruned_components == 3000);
   CHECK(pruned.pruned_faces == small_faces);
@@ -77,17 +77,17 @@ TEST_CASE("decimation: small components are pruned, and the largest stays", "[de
   CHECK(std::all_of(pruned.source_face.begin(), pruned.source_face.end(),
                     [&](std::uint32_t f) { return f < large_faces; }));
 
-  options.prune_size = 0.025;
+  options.prune_size = Length::absolute(0.025);
   const Decimated sheets = run(mesh, options);
   CHECK(sheets.pruned_components == 1500);
   // A share of the diagonal; and the largest stays even when it is small enough.
   options.prune_size.reset();
-  options.prune_relative_size = 1.0;
+  options.prune_size = Length::relative(1.0);
   const Decimated largest = run(mesh, options);
   CHECK(largest.pruned_components == 3000);
   CHECK(largest.mesh.face_count() == 300);
 
-  options.prune_relative_size = -1.0;
+  options.prune_size = Length::relative(-1.0);
   CHECK(decimate(test::half_edges(mesh), mesh.points, options).error().code == ErrorCode::kUsage);
 }
 
@@ -98,9 +98,9 @@ TEST_CASE("decimation: locked edges and faces stay as they are", "[decimate]") {
   const HalfEdgeMesh half_edges = test::half_edges(mesh);
   DecimateOptions options;
   options.operation = operation;
-  options.target_faces = 0;
+  options.target.faces = 0;
   const std::vector<std::uint32_t> faces = {3, 4, 5, 100, 101, 333};
-  options.locked_faces = faces;
+  options.locked.faces = faces;
   const Decimated with_faces = run(mesh, options);
   CHECK(with_faces.mesh.face_count() < mesh.face_count() / 4);
   const auto left = faces_of(with_faces.positions, with_faces.mesh.origins());
@@ -109,11 +109,11 @@ TEST_CASE("decimation: locked edges and faces stay as they are", "[decimate]") {
     CHECK(left.contains(*locked.begin()));
   }
 
-  options.locked_faces.clear();
-  options.locked_edges = {0, 17, 302, 303};
+  options.locked.faces.clear();
+  options.locked.edges = {0, 17, 302, 303};
   const Decimated with_edges = run(mesh, options);
   CHECK(with_edges.mesh.face_count() < mesh.face_count() / 4);
-  for (const std::uint32_t h : options.locked_edges) {
+  for (const std::uint32_t h : options.locked.edges) {
     const std::uint32_t from = half_edges.origin(HalfEdgeId(h)).index,
                         to = half_edges.target(HalfEdgeId(h)).index;
     const std::uint32_t p = with_edges.vertex_map[from], q = with_edges.vertex_map[to];
@@ -126,10 +126,10 @@ TEST_CASE("decimation: locked edges and faces stay as they are", "[decimate]") {
     CHECK(found);
   }
 
-  options.locked_edges = {static_cast<std::uint32_t>(mesh.corners.size())};
+  options.locked.edges = {static_cast<std::uint32_t>(mesh.corners.size())};
   CHECK(decimate(half_edges, mesh.points, options).error().code == ErrorCode::kUsage);
-  options.locked_edges.clear();
-  options.locked_faces = {static_cast<std::uint32_t>(mesh.face_count())};
+  options.locked.edges.clear();
+  options.locked.faces = {static_cast<std::uint32_t>(mesh.face_count())};
   CHECK(decimate(half_edges, mesh.points, options).error().code == ErrorCode::kUsage);
 }
 

@@ -199,7 +199,7 @@ TEST_CASE("decimation: points that no face uses change nothing, but must be fini
     test::jitter(mesh, 0.01f, 1);
     if (shuffled) mesh = shuffle(mesh, 1);
     DecimateOptions options;
-    options.target_ratio = 0.3;
+    options.target.ratio = 0.3;
     const auto expected = decimate(TriangleSurface{mesh.points, mesh.corners}, options);
     REQUIRE(expected);
     IndexedFaceSet more = mesh;
@@ -266,7 +266,7 @@ TEST_CASE("decimation: every face of a large surface comes from its own, by the 
     if (shuffled) mesh = shuffle(mesh, 1);
     for (const double ratio : {1.0, 0.6, 0.02}) {
       DecimateOptions options;
-      options.target_ratio = ratio;
+      options.target.ratio = ratio;
       options.keep_history = true;
       const auto result = decimate(TriangleSurface{mesh.points, mesh.corners}, options);
       REQUIRE(result);

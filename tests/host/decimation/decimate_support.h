@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,14 +31,17 @@ inline Decimated run(const IndexedFaceSet& mesh, const DecimateOptions& options)
   return run(half_edges(mesh), mesh.points, options);
 }
 
-/// Each way to collapse, and vertex removal.
+/// Edge collapse, half-edge collapse and vertex removal.
 inline std::vector<DecimateOptions> ways() {
-  std::vector<DecimateOptions> all(5);
-  all[1].placement = CollapsePlacement::kMidpoint;
-  all[2].placement = CollapsePlacement::kEndpoint;
-  all[3].operation = DecimateOperation::kHalfEdgeCollapse;
-  all[4].operation = DecimateOperation::kVertexRemoval;
+  std::vector<DecimateOptions> all(3);
+  all[1].operation = DecimateOperation::kHalfEdgeCollapse;
+  all[2].operation = DecimateOperation::kVertexRemoval;
   return all;
+}
+
+/// How many candidates are blocked, whatever the reason.
+inline std::size_t sum(const CountByReason& counts) {
+  return std::accumulate(counts.counts.begin(), counts.counts.end(), std::size_t{0});
 }
 
 /// As decimation begins with it: quadrics of nothing, and the apex nowhere.

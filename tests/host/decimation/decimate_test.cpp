@@ -49,7 +49,7 @@ DecimateOptions options_of(DecimateOperation operation) {
 
 DecimateOptions to_faces(DecimateOperation operation, std::size_t faces) {
   DecimateOptions options = options_of(operation);
-  options.target_faces = faces;
+  options.target.faces = faces;
   return options;
 }
 
@@ -161,13 +161,13 @@ TEST_CASE("decimation: every single collapse keeps the topology and the structur
       const HalfEdgeMesh input = half_edges(mesh);
       DecimateOptions options = options_of(operation);
       // 0 lets boundaries shrink, and a wide angle nearly everything: the link condition alone must hold.
-      options.boundary_weight = seed % 2 == 0 ? 100.0 : 0.0;
-      options.max_normal_deviation = seed < 2 ? 1.3 : 3.1;
+      options.curves.boundary_weight = seed % 2 == 0 ? 100.0 : 0.0;
+      options.bounds.normal_deviation = seed < 2 ? 1.3 : 3.1;
       std::size_t collapses = 0;
       double error = 0;
       for (std::size_t target = mesh.face_count() + 1; target-- > 0;) {
         INFO(name << ", seed " << seed << ", target " << target);
-        options.target_faces = target;
+        options.target.faces = target;
         const Decimated result = run(input, mesh.points, options);
         check_sound(input, mesh.points, result);
         CHECK(result.collapses + result.positions.size() == mesh.points.size());
@@ -209,7 +209,8 @@ TEST_CASE("decimation: nothing smaller than a tetrahedron, a triangle or a pillo
   const Decimated tetrahedron = run(test::tetrahedron(), to_faces(operation, 0));
   CHECK(tetrahedron.stop == DecimateStop::kNoLegalCollapse);
   CHECK(tetrahedron.collapses == 0);
-  CHECK(tetrahedron.rejected_link == (operation == DecimateOperation::kVertexRemoval ? 4u : 6u));
+  CHECK(tetrahedron.rejected[Reason::kLinkCondition] ==
+        (operation == DecimateOperation::kVertexRemoval ? 4u : 6u));
   CHECK(tetrahedron.mesh.face_count() == 4);
 
   IndexedFaceSet triangle;
@@ -218,7 +219,7 @@ TEST_CASE("decimation: nothing smaller than a tetrahedron, a triangle or a pillo
   const Decimated lone = run(triangle, to_faces(operation, 0));
   CHECK(lone.stop == DecimateStop::kNoLegalCollapse);
   CHECK(lone.mesh.face_count() == 1);
-  CHECK(lone.rejected_link == 3);
+  CHECK(lone.rejected[Reason::kLinkCondition] == 3);
 
   IndexedFaceSet pillow = triangle;
   pillow.corners = {0, 1, 2, 0, 2, 1};
@@ -253,7 +254,7 @@ TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decima
       if (p.x > 0 && p.x < 12 && p.y > 0 && p.y < 9) p = {moved.points[i].x, moved.points[i].y, 0};
     }
     DecimateOptions options = options_of(operation);
-    options.max_error = 1e-9;
+    options.bounds.error = Length::absolute(1e-9);
     const Decimated result = run(mesh, options);
     // In the plane z = 0 every product with a normal (0, 0, 1) is exact, and so are boundary planes along the
     // axes.
@@ -281,7 +282,7 @@ TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage"
     for (const double weight : {100.0, 0.0})
       for (const std::size_t target : {400u, 200u, 100u, 40u, 10u, 1u}) {
         DecimateOptions options = to_faces(operation, target);
-        options.boundary_weight = weight;
+        options.curves.boundary_weight = weight;
         const Decimated result = run(input, mesh.points, options);
         for (std::uint32_t f = 0; f < result.mesh.face_count(); ++f)
           CHECK(normal_of(result.mesh, result.positions, f).z > 0);
@@ -344,7 +345,7 @@ TEST_CASE("decimation: a flat sheet that stands askew has an error of rounding o
   IndexedFaceSet mesh = test::grid(12, 9);
   for (Vec3& p : mesh.points) p.z = p.x / 2 + p.y / 4;
   DecimateOptions options = options_of(operation);
-  options.max_error = 4.5e-7;
+  options.bounds.error = Length::absolute(4.5e-7);
   const Decimated result = run(mesh, options);
   CHECK(result.mesh.face_count() == 2);
 }
@@ -356,14 +357,14 @@ TEST_CASE("decimation: the error bound holds, and a larger one leaves fewer face
   std::size_t faces = mesh.face_count() + 1;
   for (const double bound : {0.0005, 0.003, 0.01, 0.05}) {
     DecimateOptions options = options_of(operation);
-    options.max_error = bound;
+    options.bounds.error = Length::absolute(bound);
     const Decimated result = run(mesh, options);
     CHECK(result.stop == DecimateStop::kErrorBound);
     CHECK(result.error <= bound);
     CHECK(result.error > 0.5 * bound);
     CHECK(result.mesh.face_count() < faces);
     faces = result.mesh.face_count();
-    options.target_faces = faces + 100;
+    options.target.faces = faces + 100;
     CHECK(run(mesh, options).stop == DecimateStop::kTargetReached);
   }
 }
@@ -378,7 +379,7 @@ TEST_CASE("decimation: the error is the root of the mean squared distance from t
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, static_cast<float>(kHeight)}};
   mesh.corners = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
   DecimateOptions options = to_faces(operation, 2);
-  options.boundary_weight = 1;
+  options.curves.boundary_weight = 1;
   const Decimated result = run(mesh, options);
   REQUIRE(result.collapses == 1);
   REQUIRE(result.source_vertex == std::vector<std::uint32_t>{0, 1, 2, 3});
@@ -412,7 +413,7 @@ TEST_CASE("decimation: boundaries stay with weight and shrink without", "[decima
   const double before = area(run(mesh, to_faces(operation, mesh.face_count())));
   DecimateOptions options = to_faces(operation, 40);
   CHECK(area(run(mesh, options)) > 0.97 * before);
-  options.boundary_weight = 0;
+  options.curves.boundary_weight = 0;
   CHECK(area(run(mesh, options)) < 0.9 * before);
 }
 
@@ -451,10 +452,10 @@ TEST_CASE("decimation: a smaller angle forbids more", "[decimate]") {
   std::size_t last = 0;
   for (const double angle : {1.0, 0.3, 0.05}) {
     DecimateOptions options = to_faces(operation, 0);
-    options.max_normal_deviation = angle;
+    options.bounds.normal_deviation = angle;
     const Decimated result = run(mesh, options);
     CHECK(result.stop == DecimateStop::kNoLegalCollapse);
-    CHECK(result.rejected_fold_over > 0);
+    CHECK(result.rejected[Reason::kFoldOver] > 0);
     CHECK(result.mesh.face_count() > last);
     last = result.mesh.face_count();
   }
@@ -474,7 +475,7 @@ TEST_CASE("decimation: faces without area, and points that coincide, do no harm"
     CHECK(std::isfinite(result.error));
   }
   DecimateOptions options = options_of(operation);
-  options.max_error = 1e-9;
+  options.bounds.error = Length::absolute(1e-9);
   const Decimated result = run(input, mesh.points, options);
   CHECK(result.mesh.face_count() == 2);
   CHECK(result.error == 0);
@@ -579,17 +580,17 @@ TEST_CASE("decimation: options and input out of range are refused", "[decimate]"
   const double nan = std::nan("");
   for (const double angle : {0.0, -1.0, 3.2, nan}) {
     DecimateOptions options = to_faces(operation, 10);
-    options.max_normal_deviation = angle;
+    options.bounds.normal_deviation = angle;
     CHECK(code(input, mesh.points, options) == ErrorCode::kUsage);
   }
   for (const double weight : {-1.0, nan, HUGE_VAL}) {
     DecimateOptions options = to_faces(operation, 10);
-    options.boundary_weight = weight;
+    options.curves.boundary_weight = weight;
     CHECK(code(input, mesh.points, options) == ErrorCode::kUsage);
   }
   for (const double bound : {-1e-9, nan}) {
     DecimateOptions options = to_faces(operation, 10);
-    options.max_error = bound;
+    options.bounds.error = Length::absolute(bound);
     CHECK(code(input, mesh.points, options) == ErrorCode::kUsage);
   }
   CHECK(code(input, std::span(mesh.points).first(5), to_faces(operation, 10)) == ErrorCode::kUsage);

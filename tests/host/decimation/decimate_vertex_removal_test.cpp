@@ -584,10 +584,10 @@ TEST_CASE("decimation: what neighbours get of a vertex that goes counts when the
       for (std::uint32_t q = 0; q < p; ++q) {
         DecimateOptions options;
         options.keep_history = true;
-        options.max_normal_deviation = 3.0;
+        options.bounds.normal_deviation = 3.0;
         options.attributes = {{2, values.all, value_of_corner, kWeight, AttributeKind::kPlain}};
         for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
-          if (v != p && v != q) options.locked_vertices.push_back(v);
+          if (v != p && v != q) options.locked.vertices.push_back(v);
         const Faces at_p = faces_at(before, p);
         if (is_parted(p) != is_parted(q) ||
             std::none_of(at_p.begin(), at_p.end(), [&](const Face& f) { return f.corners[1] == q; }))
@@ -714,8 +714,8 @@ TEST_CASE("decimation: vertex removal makes no edge that is there, and takes the
   mesh.points = {{1, 0, 0}, {0, 1, 0.5f}, {-1, 0, 0}, {0, -1, 0.5f}, {0, 0, 0.1f}};
   mesh.corners = {4, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 0, 2, 1, 0, 3, 2};
   DecimateOptions options;
-  options.locked_vertices = {0, 1, 2, 3};
-  options.max_normal_deviation = 1.5;
+  options.locked.vertices = {0, 1, 2, 3};
+  options.bounds.normal_deviation = 1.5;
   const Decimated result = run(mesh, options);
   REQUIRE(result.collapses == 1);
   REQUIRE(result.mesh.face_count() == 4);
@@ -728,11 +728,11 @@ TEST_CASE("decimation: vertex removal makes no edge that is there, and takes the
   CHECK(edges == 4);  // each of both edges, from both sides
 
   // The top lies 0.1 above the edge from 0 to 2, and 0.4 below that from 1 to 3, which counts.
-  options.max_error = 0.3;
+  options.bounds.error = Length::absolute(0.3);
   const Decimated refused = run(mesh, options);
   CHECK(refused.collapses == 0);
   CHECK(refused.stop == DecimateStop::kErrorBound);
-  options.max_error = 0.5;
+  options.bounds.error = Length::absolute(0.5);
   CHECK(run(mesh, options).collapses == 1);
 }
 
@@ -749,7 +749,7 @@ TEST_CASE("decimation: vertex removal keeps the shape of a flat outline with a n
     notched.corners.insert(notched.corners.end(), corners.begin(), corners.end());
   }
   DecimateOptions options;
-  options.max_error = 1e-9;
+  options.bounds.error = Length::absolute(1e-9);
   const Decimated result = run(notched, options);
   CHECK(result.mesh.face_count() == 4);
   CHECK(result.error == 0);
@@ -780,7 +780,7 @@ TEST_CASE("decimation: a vertex of many neighbours goes when it has fewer", "[de
   for (std::uint32_t i = 0; i < count; ++i)
     mesh.corners.insert(mesh.corners.end(), {count, i, (i + 1) % count});
   DecimateOptions options;
-  options.max_error = 1e-6;
+  options.bounds.error = Length::absolute(1e-6);
   const Decimated result = run(mesh, options);
   CHECK(result.mesh.face_count() == 2);
   CHECK(result.source_vertex == std::vector<std::uint32_t>{0, kSide, 2 * kSide, 3 * kSide});
@@ -791,7 +791,7 @@ TEST_CASE("decimation: vertex removal's history names what went and what stands 
   test::jitter(mesh, 0.02f, 3);
   DecimateOptions options;
   options.keep_history = true;
-  options.target_faces = 200;
+  options.target.faces = 200;
   const Decimated result = run(mesh, options);
   REQUIRE(result.history.size() == result.collapses);
   std::vector<std::uint32_t> stands(mesh.points.size());

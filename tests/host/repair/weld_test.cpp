@@ -111,7 +111,7 @@ TEST_CASE("welding within a tolerance agrees with comparing all pairs", "[weld]"
   for (const double tolerance : {0.01, 0.05, 0.2, 0.7, 1.2, 20.0}) {
     CAPTURE(tolerance);
     const IndexedFaceSet mesh = noisy_lattice(random, 0.06f);
-    const Welded result = welded(mesh, {tolerance, false});
+    const Welded result = welded(mesh, {Length::absolute(tolerance)});
     const std::vector<std::uint32_t> expected = clusters_of(mesh, tolerance);
     std::map<std::uint32_t, std::uint32_t> name;
     std::map<std::uint32_t, Vec3> lowest;
@@ -141,7 +141,7 @@ TEST_CASE("welding does not depend on the order of the points", "[weld]") {
   std::shuffle(order.begin(), order.end(), random);
   IndexedFaceSet shuffled;
   for (const std::uint32_t p : order) shuffled.points.push_back(mesh.points[p]);
-  const Welded a = welded(mesh, {0.1, false}), b = welded(shuffled, {0.1, false});
+  const Welded a = welded(mesh, {Length::absolute(0.1)}), b = welded(shuffled, {Length::absolute(0.1)});
   for (std::size_t i = 0; i < order.size(); ++i)
     REQUIRE(b.mesh.points[b.point_of[i]] == a.mesh.points[a.point_of[order[i]]]);
   CHECK(a.merged_points == b.merged_points);
@@ -150,14 +150,14 @@ TEST_CASE("welding does not depend on the order of the points", "[weld]") {
 TEST_CASE("a relative tolerance is a share of the diagonal", "[weld]") {
   IndexedFaceSet mesh;
   mesh.points = {{0, 0, 0}, {3, 4, 0}, {0.04f, 0, 0}, {0.06f, 4, 0}};  // Diagonal 5.
-  CHECK(welded(mesh, {0.009, true}).merged_points == 1);
-  CHECK(welded(mesh, {0.007, true}).merged_points == 0);
+  CHECK(welded(mesh, {Length::relative(0.009)}).merged_points == 1);
+  CHECK(welded(mesh, {Length::relative(0.007)}).merged_points == 0);
 }
 
 TEST_CASE("tolerances far below the extent find their neighbours still", "[weld]") {
   IndexedFaceSet mesh;
   mesh.points = {{0, 0, 0}, {1e-20f, 0, 0}, {3e-20f, 0, 0}, {1e20f, 0, 0}, {-1e20f, 1e20f, 5}};
-  const Welded result = welded(mesh, {1.5e-20, false});
+  const Welded result = welded(mesh, {Length::absolute(1.5e-20)});
   CHECK(result.point_of == std::vector<std::uint32_t>{0, 0, 1, 2, 3});
 }
 
@@ -185,10 +185,11 @@ TEST_CASE("attributes: equal values stay with points, different ones become seam
 
 TEST_CASE("what cannot be welded is a usage error", "[weld]") {
   IndexedFaceSet mesh = test::tetrahedron();
-  CHECK(weld(mesh, {-1.0, false}).error().code == ErrorCode::kUsage);
-  CHECK(weld(mesh, {std::numeric_limits<double>::quiet_NaN(), true}).error().code == ErrorCode::kUsage);
+  CHECK(weld(mesh, {Length::absolute(-1.0)}).error().code == ErrorCode::kUsage);
+  CHECK(weld(mesh, {Length::relative(std::numeric_limits<double>::quiet_NaN())}).error().code ==
+        ErrorCode::kUsage);
   mesh.points[0].x = std::numeric_limits<float>::infinity();
-  CHECK(weld(mesh, {0.1, false}).error().code == ErrorCode::kUsage);
+  CHECK(weld(mesh, {Length::absolute(0.1)}).error().code == ErrorCode::kUsage);
   mesh = test::tetrahedron();
   mesh.corners[0] = 77;
   CHECK(weld(mesh).error().code == ErrorCode::kUsage);

@@ -1,4 +1,4 @@
-// Decimation: collapses and removals, cheapest first, by quadric error and other criteria.
+// Decimation: fewer triangles, by edge collapses, half-edge collapses or vertex removals.
 #pragma once
 
 #include <array>
@@ -12,9 +12,10 @@
 #include <vkmesh/analysis/surface_distance.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
+#include <vkmesh/decimation/reason.h>
+#include <vkmesh/math/length.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
-#include <vkmesh/passes/collapse_costs.h>
 
 namespace vkmesh {
 
@@ -27,7 +28,7 @@ enum class DecimateOperation {
 
 enum class DecimateBoundary {
   kKept,     ///< Boundary vertices are locked: the boundary stays as it is.
-  kInShape,  ///< Constraint planes hold the boundary's shape; see boundary_weight.
+  kInShape,  ///< Constraint planes hold the boundary's shape; see DecimateCurves.
   kFree      ///< The boundary may shrink.
 };
 
@@ -50,109 +51,108 @@ struct DecimateAttribute {
   AttributeKind kind = AttributeKind::kPlain;
 };
 
-/// Criteria beside the quadric error, which combine. Weights decide what goes first; bounds forbid. What was
-/// beyond a bound before may stay so, but gets no worse.
-struct DecimateCriteria {
-  // What a removal costs is A (quadric_weight² Q + L² (density_weight² + aspect_weight² (1 - 1/R) +
-  // normal_weight² (1 - cos α))), where A is the area that the vertex or edge stands for, Q its mean squared
-  // distance to the planes, L the length of the edge that goes (of a vertex that goes, the root of the mean
-  // square of those at it), R the worst aspect ratio of the new faces, and α the largest angle between a new
-  // face's normal and the nearest of the old ones. Any weight but quadric_weight takes about ten times as
-  // long, since costs may fall; each at least 0.
-  double quadric_weight = 1;  ///< Default 1.
+/// When to stop: the first of these that is met counts. None set: when no legal removal is left.
+struct DecimateTargets {
+  /// This many faces are left, or one fewer: an interior removal takes two.
+  std::optional<std::size_t> faces;
+  /// This many vertices are left, isolated ones not counted.
+  std::optional<std::size_t> vertices;
+  /// This share of the faces is left, in [0, 1].
+  std::optional<double> ratio;
+  /// So many seconds have passed; at least 0. The only target whose result depends on the machine.
+  std::optional<double> seconds;
+};
+
+/// What a removal costs, the cheapest being done first: A (quadric² Q + L² (density² + aspect_ratio² (1 -
+/// 1/R) + normals² (1 - cos α))). A is the area that the vertex or edge stands for and Q its mean squared
+/// distance to the planes; L is the length of the edge that goes, or of a vertex that goes the root of the
+/// mean square of those at it; R is the worst aspect ratio of the new faces, and α the largest angle between
+/// the normal of a new face and the nearest of the old ones. Each weight is at least 0, and one is above. Any
+/// but `quadric` makes decimation about ten times as slow.
+struct DecimateWeights {
+  double quadric = 1;  ///< Default 1.
   /// At 1, a vertex is as dear as one that lies as far from the planes as from its neighbours: vertices go
   /// where they are dense. Default 0.
-  double density_weight = 0;
-  double aspect_weight = 0;  ///< Against long thin triangles. Default 0.
-  double normal_weight = 0;  ///< Against faces that look where no face looked. Default 0.
+  double density = 0;
+  double aspect_ratio = 0;  ///< Against long thin triangles. Default 0.
+  double normals = 0;       ///< Against faces that look where no face looked. Default 0.
+};
 
-  /// No point of the surface comes to lie farther than this from the original surface, and none of that
-  /// farther from the surface: the Hausdorff distance, both ways, to the precision of the coordinates. In
-  /// units of the positions, and as a share of the bounding box's diagonal. Guaranteed, as a sum of
-  /// bounds that is kept with each face; it takes some ten times as long. Default none.
-  std::optional<double> max_distance, max_relative_distance;
-  /// Fill distance_bound without a bound. Default off.
-  bool watch_distance = false;
-  /// Each face of the original is handed on to the nearest one when it goes or moves, and no face comes to
-  /// look farther than this from where one looked that was handed to it. Radians, in (0, π). Default none.
-  std::optional<double> max_original_normal_deviation;
+/// What is forbidden, whatever it costs. What was beyond a bound before may stay so, but gets no worse.
+struct DecimateBounds {
+  /// The largest quadric error of a removal: the root of the area-weighted mean squared distance to the
+  /// planes that the kept vertex stands for (those of faces and of the boundary). Of a vertex that is
+  /// removed: that of the point below or above it, to the planes that it stood for, and what the new edges
+  /// lie below or above its own. Default none.
+  std::optional<Length> error;
+  /// The Hausdorff distance, both ways, between the surface and the original, to the precision of the
+  /// coordinates. Guaranteed, by a sum of bounds that is kept with each face; about ten times as slow.
+  /// Default none.
+  std::optional<Length> distance;
+  /// Fill DecimationReport::distance_bound without a bound. Default off.
+  bool report_distance = false;
+  /// The angle by which one removal may turn the normal of a face that remains. Radians, in (0, π). Default
+  /// 75 degrees.
+  double normal_deviation = 1.308996938995747;
+  /// The angle between the normal of a face and the nearest of those of the original's faces that it stands
+  /// for: each is handed on to the nearest face when it goes or moves. Radians, in (0, π). Default none.
+  std::optional<double> original_normal_deviation;
   /// Of faces that are made: the longest side over the height upon it, as a multiple of that of an
   /// equilateral triangle; at least 1. Default none.
-  std::optional<double> max_aspect_ratio;
-  /// No edge that is made is longer, in units of the positions. Default none.
-  std::optional<double> max_edge_length;
-  /// No vertex gets more edges; at least 3. Default none.
-  std::optional<std::size_t> max_valence;
+  std::optional<double> aspect_ratio;
+  /// Of edges that are made; above 0. Default none.
+  std::optional<Length> edge_length;
+  /// The edges at a vertex that gets some; at least 3. Default none.
+  std::optional<std::size_t> valence;
+};
+
+/// How boundary, creases and seams keep their shape: by constraint planes that stand on their edges,
+/// perpendicular to a face, each with a weight relative to a plane of the same area; at least 0.
+struct DecimateCurves {
+  DecimateBoundary boundary = DecimateBoundary::kInShape;  ///< Default in shape.
+  double boundary_weight = 10;                             ///< For a boundary kept in shape. Default 10.
+  /// Edges bent by at least this are creases. Radians, in (0, π]. Default none.
+  std::optional<double> crease_angle;
+  double crease_weight = 10;  ///< One plane for each face. Default 10.
+  double seam_weight = 10;    ///< The same on seams. Default 10.
+};
+
+/// What stays as it is. Numbers in any order.
+struct DecimateLocks {
+  /// Neither moved nor removed. A collapse may end in one.
+  std::vector<std::uint32_t> vertices;
+  /// Ends and all: half-edges, either of the two, where 3 f + i goes from corner i of face f to the next.
+  std::vector<std::uint32_t> edges;
+  std::vector<std::uint32_t> faces;  ///< Corners and all.
 };
 
 struct DecimateOptions {
   /// Default edge collapse.
   DecimateOperation operation = DecimateOperation::kEdgeCollapse;
-  /// Of edge collapses. Default optimal.
-  CollapsePlacement placement = CollapsePlacement::kOptimal;
-
-  // Rules to stop by, of which any number may be set; the first that is met counts. None set: until no legal
-  // collapse is left.
-  /// Stop when this many faces are left (or one fewer: an interior collapse removes two).
-  std::optional<std::size_t> target_faces;
-  /// Stop when this many vertices are left, isolated ones not counted.
-  std::optional<std::size_t> target_vertices;
-  /// Stop when this share of the faces is left, in [0, 1].
-  std::optional<double> target_ratio;
-  /// Do no collapse whose error exceeds this: the root of the area-weighted mean squared distance, in units
-  /// of the positions, to the planes that the kept vertex stands for (those of faces and of the boundary). Of
-  /// a vertex that is removed: that of the point below or above it, to the planes that it stood for, and what
-  /// the new edges lie below or above its own.
-  std::optional<double> max_error;
-  /// The same as a share of the bounding box's diagonal.
-  std::optional<double> max_relative_error;
-  /// Stop after this many seconds of work. The only rule whose result depends on the machine.
-  std::optional<double> time_limit;
-
-  /// A collapse is illegal when it turns the normal of a face that remains by more than this. Radians, in (0,
-  /// π). Default 75 degrees. See `decimate`.
-  double max_normal_deviation = 1.308996938995747;
-  /// Default in shape.
-  DecimateBoundary boundary = DecimateBoundary::kInShape;
-  DecimateCriteria criteria;
-  /// Weight of the constraint planes that stand on boundary edges, perpendicular to their face, relative to a
-  /// plane of the same area; for a boundary kept in shape. Default 10.
-  double boundary_weight = 10.0;
-  /// Edges bent by at least this, radians in (0, π], are creases: constraint planes stand on them as on the
-  /// boundary, one for each of their faces. Default none.
-  std::optional<double> crease_angle;
-  double crease_weight = 10.0;  ///< Of these planes. Default 10.
-  /// See `decimate`.
+  DecimateTargets target;
+  DecimateWeights weights;
+  DecimateBounds bounds;
+  DecimateCurves curves;
+  DecimateLocks locked;
+  /// See `decimate`. Default none.
   std::vector<DecimateAttribute> attributes;
-  /// A number for each corner of the mesh, borrowed: corners at one vertex whose numbers differ are parted by
-  /// seams, as those whose attributes differ are (materials, for example). Default none.
+  /// A number for each corner of the mesh, borrowed: corners at one vertex whose numbers differ are separated
+  /// by seams, as those whose attributes differ are (materials, for example). Default none.
   std::span<const std::uint32_t> corner_groups;
-  /// Constraint planes stand on seams as on the boundary, one for each face; this is their weight.
-  /// Default 10.
-  double seam_weight = 10.0;
-  /// Vertices that are neither moved nor removed, in any order. A collapse may end in one.
-  std::vector<std::uint32_t> locked_vertices;
-  /// Edges that stay as they are, ends and all: half-edges, either of the two, where 3 f + i goes from corner
-  /// i of face f to the next.
-  std::vector<std::uint32_t> locked_edges;
-  /// Faces that stay as they are, corners and all.
-  std::vector<std::uint32_t> locked_faces;
-  /// Before all else, take away each component whose bounding box has a diagonal of at most this, in units of
-  /// the positions, or as a share of the whole mesh's diagonal. The component of most faces always stays.
-  /// Default: none goes. Ratios remain those of all faces.
-  std::optional<double> prune_size, prune_relative_size;
-  /// Fill Decimated::history and Decimated::changes. The cheapest edges go first then even where the target
-  /// is far and a sweep would be faster (docs/decimation.md), so that the result differs a little. Default
-  /// off: it takes 28 bytes a collapse; 32 more for each face that vertex removals make, about four each
-  /// time; and with attributes 12 for each wedge that collapses change, one or two each time, and 4 for each
-  /// component.
+  /// Before all else, take away each component whose bounding box has a diagonal of at most this. The
+  /// component of most faces always stays. Ratios remain those of all faces. Default: none goes.
+  std::optional<Length> prune_size;
+  /// Fill BasicDecimated::history and changes. The cheapest go first then from the start, so that the result
+  /// differs a little where the target is far. Default off: it takes 28 bytes a collapse; 32 more for each
+  /// face that vertex removals make, about four each time; and with attributes 12 for each wedge that
+  /// collapses change, one or two each time, and 4 for each component.
   bool keep_history = false;
 };
 
 enum class DecimateStop {
-  kTargetReached,   ///< target_faces, target_vertices or target_ratio was reached.
+  kTargetReached,   ///< One of DecimateTargets but the time was met.
   kErrorBound,      ///< No collapse is left; some were refused for their error.
-  kTimeLimit,       ///< time_limit has passed.
+  kTimeLimit,       ///< DecimateTargets::seconds have passed.
   kNoLegalCollapse  ///< Every remaining collapse is illegal (link condition, fold-over, locked vertices).
 };
 
@@ -209,8 +209,29 @@ struct DecimationChanges {
   std::vector<std::vector<float>> values;
 };
 
+/// What a decimation did, and what it cost.
+struct DecimationReport {
+  DecimateStop stop = DecimateStop::kTargetReached;
+  /// The largest quadric error of a removal that was done, in units of the positions (see
+  /// DecimateBounds::error) and as a share of the bounding box's diagonal.
+  double error = 0, relative_error = 0;
+  /// The largest attribute error of a removal that was done: the root of the area-weighted mean of the
+  /// squared changes of the attributes, as shares of their ranges, times their weights.
+  double attribute_error = 0;
+  /// At most this is the Hausdorff distance between the input, without what was pruned, and the result, in
+  /// units of the positions; if DecimateBounds asks for it.
+  std::optional<double> distance_bound;
+  std::size_t collapses = 0;  ///< Or removals.
+  /// What prune_size took away.
+  std::size_t pruned_components = 0, pruned_faces = 0;
+  /// How often a removal was found illegal, and why.
+  CountByReason rejected;
+  /// Where no target was met: what blocks the edges (of vertex removal, the vertices) that are left.
+  CountByReason blocked;
+};
+
 template <class Point>
-struct BasicDecimated {
+struct BasicDecimated : DecimationReport {
   HalfEdgeMesh mesh;
   std::vector<Point> positions;
   /// For each vertex of `mesh` the vertex of the input whose place it keeps in the history; ascending. A
@@ -226,76 +247,40 @@ struct BasicDecimated {
   /// Every collapse in order, if asked for.
   std::vector<Collapse<Point>> history;
   DecimationChanges changes;  ///< The same.
-  DecimateStop stop = DecimateStop::kTargetReached;
-  /// The largest error of a collapse that was done, in units of the positions (see max_error) and as a share
-  /// of the bounding box's diagonal.
-  double error = 0, relative_error = 0;
-  /// The largest attribute error of a collapse that was done: the root of the area-weighted mean of the
-  /// squared changes of the attributes, as shares of their ranges, times their weights.
-  double attribute_error = 0;
-  /// At most this is the Hausdorff distance between the input, without what was pruned, and the result, in
-  /// units of the positions; if DecimateCriteria watches it.
-  std::optional<double> distance_bound;
-  std::size_t collapses = 0;
-  /// What prune_size took away.
-  std::size_t pruned_components = 0, pruned_faces = 0;
-  // How often a collapse was found illegal, and why.
-  std::size_t rejected_link = 0;       ///< It would make the surface non-manifold, or nothing.
-  std::size_t rejected_fold_over = 0;  ///< A face would fold over.
-  std::size_t rejected_error = 0;      ///< Its error is too large.
-  std::size_t rejected_locked = 0;     ///< Both ends are locked.
-  std::size_t rejected_seam = 0;       ///< It would close, part or join seams.
-  std::size_t rejected_criterion = 0;  ///< A bound of DecimateCriteria forbids it.
-  /// Where no target was reached and no time limit: what holds the edges (of vertex removal, the vertices)
-  /// that are left.
-  struct Held {
-    std::size_t link = 0, fold_over = 0, error = 0, locked = 0, boundary = 0, seam = 0, criterion = 0;
-  } held;
 };
 
 using Decimated = BasicDecimated<Vec3>;
 
 /// M. Garland and P. Heckbert, "Surface simplification using quadric error metrics" (1997): planes are
-/// weighted by area, and the legal collapse of least error is done, again and again. Vertex removal after W.
+/// weighted by area, and the legal collapse of least cost is done, again and again. Vertex removal after W.
 /// Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes" (1992), with the best of all
 /// triangulations of the hole: that from which the old surface lies least far, where both are seen along the
 /// normal of the vertex. It makes no edge that exists, and gives the planes of the vertex to the corners of
 /// the triangle below it, each its barycentric share. A vertex of more than 16 neighbours stays until it has
-/// fewer.
+/// fewer. An edge collapse puts its point where the error is least.
 ///
-/// Order: with optimal placement the error of an edge only rises, so edges lie in a MonotoneQueue under lower
-/// bounds of their errors, and a collapse is among the cheapest to 1/16 octave. Half-edge collapses go the
-/// same way. Midpoints may fall in error, and so may costs with other weights than that of the quadrics:
-/// these lie in an AddressableHeap, and the cheapest goes first. Ties fall to the order of the input, so the
-/// same input gives the same bytes everywhere.
+/// The same input gives the same bytes everywhere. Removals go by cost, to within 6 %; where the target is
+/// far from a large surface, what goes first goes in another order that comes to the same error. Late, a
+/// collapse waits while it would move the surface along itself by more than the error that is due.
 ///
-/// Planes do not tell how far points move within them. Once a 32nd of the faces is left, and at the
-/// boundary and locked vertices once a fourth is, a legal collapse of an edge therefore waits, unless
-/// criteria other than the quadrics choose, until the errors that are due allow for the distance between the
-/// faces before and after: at most 1.5 times the root mean square that they stand for. It is measured from
-/// the ends of the edge, its middle and the middles of the edges around, to the faces on the other side.
-///
-/// Legal is a collapse that
+/// Legal is a removal that
 /// - keeps the graph simple and the surface a manifold of the same topology: the link condition, H. Hoppe et
 ///   al., "Mesh optimization" (1993), with all boundary loops closed by one vertex;
-/// - folds nothing over. In the plane that is the sign of an area. In space no rule of normals alone is
-///   proof: comparing a face's normal before and after (a dot product above 0) lets two neighbours turn
-///   against each other by up to 90 degrees each, until one lies upon the other, says nothing of a face
-///   without area, and sums up over many collapses. So here: no face turns by more than
-///   max_normal_deviation; none loses its area, a sliver whose height falls below a share of its length
-///   included, unless it had none, and then it must agree with the faces around it; and no two neighbours
-///   about the kept vertex come to stand against each other by more than 120 degrees, or more than some did
-///   before.
+/// - folds nothing over: no face turns by more than DecimateBounds::normal_deviation; none loses its area, a
+///   sliver whose height falls below a share of its length included, unless it had none, and then it must
+///   agree with the faces around it; and no two neighbours about the kept vertex come to stand against each
+///   other by more than 120 degrees, or more than some did before. (No rule of normals alone is proof in
+///   space.)
+/// - keeps what is locked, the curves that seams and boundary form, and the bounds.
 ///
 /// Attributes: H. Hoppe, "New quadric metric for simplifying meshes with appearance attributes" (1999). The
-/// error of a collapse is that of the planes plus, for each attribute, weight² times the squared deviation,
-/// over the faces, of its values from those that the new point gets, which are the best for its place; what
-/// is said above of the order holds. max_error and `error` are of the planes alone. A vertex that does not
-/// move keeps its values. An edge is a seam where values differ between its two sides at one of its ends, and
-/// all attributes have the same seams. Both sides of a seam share their points, so none opens; a collapse
-/// along a seam joins both sides at once; and no collapse is legal that changes which curves the seams and
-/// the boundary form, or leaves a chart between them without a face. Vertices where seams end, meet or reach
-/// the boundary are locked.
+/// cost of a collapse is that of the planes plus, for each attribute, weight² times the squared deviation,
+/// over the faces, of its values from those that the new point gets, which are the best for its place. Bounds
+/// and reports of the error are of the planes alone. A vertex that does not move keeps its values. An edge is
+/// a seam where values differ between its two sides at one of its ends, and all attributes have the same
+/// seams. Both sides of a seam share their points, so none opens; a collapse along a seam joins both sides at
+/// once; and none is legal that leaves a chart without a face. Vertices where seams end, meet or reach the
+/// boundary are locked.
 ///
 /// Of a vertex that is removed, attributes count where old and new edges cross when seen along the normal: by
 /// the values of both; and at the corners of the triangle below it, which take over what it stands for, each
@@ -306,13 +291,13 @@ using Decimated = BasicDecimated<Vec3>;
 /// input does not have, and each corner of a new face has that of its vertex on its side. No removal is legal
 /// that takes the last face of a chart or the last vertex that a seam differs at.
 ///
-/// Positions are taken relative to the middle of their bounding box and to its size, so that neither a far
-/// origin nor a tiny or huge unit costs precision; points that do not move come back bit by bit. One thread.
-/// O(n log n) for midpoints, else about O(n). Memory: less than 160 bytes a vertex with a result of a tenth,
-/// 36 more for midpoints, and 28 more where the input's order has no locality and is replaced by one along a
-/// Morton curve; with attributes about 120 more, and 20 for each component. Isolated vertices are dropped.
-/// Errors: kUnsuitable unless triangles, finite and manifold; kUsage for options outside their range;
-/// kInterrupted; kOutOfMemory.
+/// Neither a far origin nor a tiny or huge unit costs precision, and points that do not move come back bit by
+/// bit. Isolated vertices are dropped. Threads: as many as the caller's TBB arena has, for all but vertex
+/// removals and the collapses that attributes, weights or bounds other than the error and the normal
+/// deviation have a say in; the result does not depend on how many. About O(n). Memory: less than 160 bytes a
+/// vertex with a result of a tenth; 28 more where the input's order has no locality; with weights 36 more;
+/// with attributes about 120 more, and 20 for each component. Errors: kUnsuitable unless triangles, finite
+/// and manifold; kUsage for options outside their range; kInterrupted; kOutOfMemory.
 [[nodiscard]] Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                                          const DecimateOptions& options, const Progress& progress = {});
 [[nodiscard]] Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,

@@ -9,11 +9,9 @@
 
 namespace vkmesh {
 
-struct DecimatedIndexBuffer {
+struct DecimatedIndexBuffer : DecimationReport {
   std::vector<std::uint32_t> indices;      ///< Three a triangle, of the vertices of the input.
   std::vector<std::uint32_t> source_face;  ///< For each triangle that of the input it was; ascending.
-  DecimateStop stop = DecimateStop::kTargetReached;
-  double error = 0, relative_error = 0, attribute_error = 0;  ///< As of BasicDecimated.
 };
 
 /// For engines that draw all levels of detail from one vertex buffer: half-edge collapses, of which only the

@@ -15,8 +15,8 @@ enum class Reason : std::uint8_t {
   kSeam,        ///< It would close, part or join seams.
   kErrorBound,  ///< Its error is larger than the bound.
   kLinkCondition,  ///< The surface would not stay a manifold of the same topology.
-  kFoldOver,       ///< A face would fold over, or turn by more than max_normal_deviation.
-  kCriterion       ///< A bound of DecimateCriteria forbids it.
+  kFoldOver,       ///< A face would fold over, or turn by more than DecimateBounds::normal_deviation.
+  kCriterion       ///< One of DecimateBounds forbids it.
 };
 
 /// All reasons but kNone.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/math/length.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/mesh/polygon_soup.h>
 
@@ -14,9 +15,7 @@ namespace vkmesh {
 
 struct WeldOptions {
   /// Points at most this far apart are one; 0 (default) identifies equal coordinates only (0 equals -0).
-  double tolerance = 0;
-  /// The tolerance is a share of the diagonal of the points' bounding box, and no length.
-  bool relative = false;
+  Length tolerance;
 };
 
 struct Welded {

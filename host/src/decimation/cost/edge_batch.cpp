@@ -92,18 +92,6 @@ VKMESH_CLONES void place_optimally(EdgeBatch& batch, std::size_t count) {
     }
 }
 
-VKMESH_CLONES void place_in_middle(EdgeBatch& batch, std::size_t count) {
-  for (std::size_t first = 0; first < count; first += EdgeBatch::kBlock)
-    for (std::size_t i = first; i < first + EdgeBatch::kBlock; ++i) {
-      const Lane lane = lane_of(batch, i);
-      const Vector3 x = times(lane.end == EdgeBatch::kFree  ? 0.5f
-                              : lane.end == EdgeBatch::kAtP ? 0.0f
-                                                            : 1.0f,
-                              lane.d);
-      set_result(batch, i, x, lane.end, lane.both(x));
-    }
-}
-
 namespace {
 
 // `extra(cost, end, lane)`: the cost of a point at p (0) or q (1), and what comes to it.

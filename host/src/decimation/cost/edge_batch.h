@@ -55,8 +55,6 @@ struct EndCosts {
 /// The point of least error; where that is not determined, the nearest such point to the middle. A locked
 /// end is the only choice.
 void place_optimally(EdgeBatch& batch, std::size_t count);
-/// The middle of the edge.
-void place_in_middle(EdgeBatch& batch, std::size_t count);
 /// The end of less error; q when they are equal.
 void place_at_end(EdgeBatch& batch, std::size_t count);
 void place_at_end(EdgeBatch& batch, const EndCosts& extra, std::size_t count);

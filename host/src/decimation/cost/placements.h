@@ -9,19 +9,13 @@ namespace vkmesh::detail {
 
 /// Which edges may cost less after a collapse: none, those that the vertex had which went, those of the kept
 /// vertex, or those of its neighbours, too.
-enum class MayFall { kNone, kOfGone, kAll, kAround };
+enum class MayFall { kNone, kOfGone, kAround };
 
 struct OptimalPlacement {
   static constexpr MayFall kMayFall = MayFall::kNone;
   static constexpr bool kByCriteria = false;
   static constexpr bool kAtEnds = false;
   static void place(EdgeBatch& batch, std::size_t count) { place_optimally(batch, count); }
-};
-struct MidpointPlacement {
-  static constexpr MayFall kMayFall = MayFall::kAll;
-  static constexpr bool kByCriteria = false;
-  static constexpr bool kAtEnds = false;
-  static void place(EdgeBatch& batch, std::size_t count) { place_in_middle(batch, count); }
 };
 /// An edge r–p that became r–q may cost less than it did, but no less than the collapse of p into q. Those
 /// that q had before only cost more.

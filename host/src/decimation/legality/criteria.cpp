@@ -51,21 +51,19 @@ double aspect_ratio(const Triangle& t) {
                    : std::numeric_limits<double>::infinity();
 }
 
-Criteria::Criteria(const DecimateCriteria& criteria, const Frame& frame, const CollapseMesh& mesh)
-    : criteria_(criteria),
-      watches_distance_(criteria.watch_distance || criteria.max_distance || criteria.max_relative_distance),
-      bounds_(watches_distance_ || criteria.max_original_normal_deviation || criteria.max_edge_length ||
-              criteria.max_aspect_ratio || criteria.max_valence) {
-  if (criteria.max_distance) distance_ = *criteria.max_distance * frame.scale;
-  if (criteria.max_relative_distance)
-    distance_ = std::min(distance_, *criteria.max_relative_distance * frame.diagonal * frame.scale);
-  if (criteria.max_edge_length) {
-    const double length = *criteria.max_edge_length * frame.scale;
-    edge_length2_ = length * length;
-  }
+Criteria::Criteria(const DecimateWeights& weights, const DecimateBounds& bounds, const Frame& frame,
+                   const CollapseMesh& mesh)
+    : weights_(weights),
+      limits_(bounds),
+      watches_distance_(bounds.report_distance || bounds.distance),
+      bounds_(watches_distance_ || bounds.original_normal_deviation || bounds.edge_length ||
+              bounds.aspect_ratio || bounds.valence) {
+  const auto local = [&](const Length& length) { return length.in_units(frame.diagonal) * frame.scale; };
+  if (bounds.distance) distance_ = local(*bounds.distance);
+  if (bounds.edge_length) edge_length2_ = local(*bounds.edge_length) * local(*bounds.edge_length);
   if (watches_distance_) distances_.assign(mesh.face_count(), 0.0f);
-  if (criteria.max_original_normal_deviation) {
-    chord_ = 2 * std::sin(0.5 * *criteria.max_original_normal_deviation);
+  if (bounds.original_normal_deviation) {
+    chord_ = 2 * std::sin(0.5 * *bounds.original_normal_deviation);
     normals_.resize(mesh.face_count());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
       if (!mesh.face(4 * f).alive()) continue;  // pruned
@@ -78,12 +76,12 @@ Criteria::Criteria(const DecimateCriteria& criteria, const Frame& frame, const C
 
 float Criteria::cost(float quadric, float area, const LocalChange& change) const {
   const auto square = [](double x) { return x * x; };
-  double factor = square(criteria_.density_weight);
-  if (criteria_.aspect_weight > 0) {
+  double factor = square(weights_.density);
+  if (weights_.aspect_ratio > 0) {
     const double worst = largest(change.after, aspect_ratio);
-    factor += square(criteria_.aspect_weight) * (worst > 0 ? 1 - 1 / worst : 0.0);
+    factor += square(weights_.aspect_ratio) * (worst > 0 ? 1 - 1 / worst : 0.0);
   }
-  if (criteria_.normal_weight > 0) {
+  if (weights_.normals > 0) {
     double least = 1;  // cosine
     for (const LocalChange::Face& face : change.after) {
       const DVec3 n = unit_normal(face.corner);
@@ -92,23 +90,22 @@ float Criteria::cost(float quadric, float area, const LocalChange& change) const
         nearest = std::max(nearest, glm::dot(n, unit_normal(old.corner)));
       least = std::min(least, nearest);
     }
-    factor += square(criteria_.normal_weight) * (1 - least);
+    factor += square(weights_.normals) * (1 - least);
   }
-  const double sum = square(criteria_.quadric_weight) * static_cast<double>(quadric) +
+  const double sum = square(weights_.quadric) * static_cast<double>(quadric) +
                      static_cast<double>(area) * change.length2 * factor;
   return static_cast<float>(sum);
 }
 
 bool Criteria::allow(const LocalChange& change) {
-  if (criteria_.max_valence && change.edges_after > std::max(*criteria_.max_valence, change.edges_before))
-    return false;
-  if (criteria_.max_edge_length) {
+  if (limits_.valence && change.edges_after > std::max(*limits_.valence, change.edges_before)) return false;
+  if (limits_.edge_length) {
     const double longest = largest(change.after, longest_side2);
     if (longest > edge_length2_ && longest > largest(change.before, longest_side2)) return false;
   }
-  if (criteria_.max_aspect_ratio) {
+  if (limits_.aspect_ratio) {
     const double worst = largest(change.after, aspect_ratio);
-    if (worst > *criteria_.max_aspect_ratio && worst > largest(change.before, aspect_ratio)) return false;
+    if (worst > *limits_.aspect_ratio && worst > largest(change.before, aspect_ratio)) return false;
   }
   return (normals_.empty() || looks_alike(change)) && (distances_.empty() || stays_near(change));
 }

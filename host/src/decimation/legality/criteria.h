@@ -16,22 +16,23 @@
 
 namespace vkmesh::detail {
 
-/// The criteria of DecimateCriteria, on changes in local units.
+/// DecimateWeights and all DecimateBounds but those of every removal, on changes in local units.
 class Criteria {
  public:
   /// 4 bytes a face if the distance is watched, 16 if normals are.
-  Criteria(const DecimateCriteria& criteria, const Frame& frame, const CollapseMesh& mesh);
+  Criteria(const DecimateWeights& weights, const DecimateBounds& bounds, const Frame& frame,
+           const CollapseMesh& mesh);
 
   /// Whether there is something to judge removals by.
   [[nodiscard]] bool bounds() const { return bounds_; }
   /// Whether `cost` is anything but the quadric error.
   [[nodiscard]] bool ranks() const {
-    return criteria_.density_weight > 0 || criteria_.aspect_weight > 0 || criteria_.normal_weight > 0;
+    return weights_.density > 0 || weights_.aspect_ratio > 0 || weights_.normals > 0;
   }
   /// What the shape of a triangle weighs when the quadric error weighs 1.
   [[nodiscard]] float shape_over_quadric() const {
     constexpr double kLeast = 1e-3;
-    const double ratio = criteria_.aspect_weight / std::max(criteria_.quadric_weight, kLeast);
+    const double ratio = weights_.aspect_ratio / std::max(weights_.quadric, kLeast);
     return static_cast<float>(ratio * ratio);
   }
   [[nodiscard]] bool watches_distance() const { return watches_distance_; }
@@ -58,7 +59,8 @@ class Criteria {
   [[nodiscard]] bool stays_near(const LocalChange& change);
   [[nodiscard]] bool looks_alike(const LocalChange& change);
 
-  DecimateCriteria criteria_;
+  DecimateWeights weights_;
+  DecimateBounds limits_;
   bool watches_distance_, bounds_;
   double edge_length2_ = std::numeric_limits<double>::infinity();
   double distance_ = std::numeric_limits<double>::infinity();  // most

@@ -154,7 +154,7 @@ void coarsen_if_far_from_target(DecimationState& state) {
   constexpr double kFar = 8, kFarther = 16;
   const CollapseMesh& mesh = state.mesh;
   const double times = times_the_target(state);
-  if (mesh.face_count() < 2 * state.partition_faces || times < kFar || state.criteria != nullptr ||
+  if (mesh.face_count() < 2 * state.sizes.partition_faces || times < kFar || state.criteria != nullptr ||
       state.attributes != nullptr || state.keep_events ||
       state.limits.error2 < std::numeric_limits<double>::infinity())
     return;
@@ -165,7 +165,8 @@ void coarsen_if_far_from_target(DecimationState& state) {
       cost_of_share(mesh, kShare) * static_cast<float>(std::clamp(times / kFarther, 1.0, 64.0));
 
   // First as they follow each other, and then what is at their ends, from one's middle to the next's.
-  const std::size_t n = mesh.apex(), count = std::max<std::size_t>(mesh.face_count() / state.range_faces, 1);
+  const std::size_t n = mesh.apex(),
+                    count = std::max<std::size_t>(mesh.face_count() / state.sizes.range_faces, 1);
   const auto at_half = [&](std::size_t k) { return static_cast<std::uint32_t>(n * k / (2 * count)); };
   std::vector<std::vector<std::uint32_t>> deferred(count);
   const auto side_by_side = [&](std::size_t ranges, auto&& range_of, auto&& coarsen) {

@@ -32,7 +32,6 @@ template <class Placement, class Queue, bool kAttributes>
 class PartitionedCollapses {
  public:
   static constexpr std::size_t kStep = kRemovalsBetweenReports;
-  static constexpr bool kMayCoarsen = !Queue::kExact;
 
   explicit PartitionedCollapses(DecimationState& state) : state_(state) {
     const std::size_t count = partition_count(), edges = 3 * state.mesh.face_count() / 2 + 1;
@@ -90,7 +89,7 @@ class PartitionedCollapses {
 
   [[nodiscard]] std::size_t partition_count() const {
     if (Queue::kExact || kAttributes || state_.criteria != nullptr) return 1;
-    return std::clamp<std::size_t>(std::bit_floor(state_.mesh.face_count() / state_.partition_faces), 1,
+    return std::clamp<std::size_t>(std::bit_floor(state_.mesh.face_count() / state_.sizes.partition_faces), 1,
                                    kMaxPartitions);
   }
 
@@ -161,11 +160,11 @@ class PartitionedCollapses {
   }
   /// Partitions must have some faces,
   [[nodiscard]] bool is_small() const {
-    return state_.faces < state_.partition_faces / 16 * partitions_.size();
+    return state_.faces < state_.sizes.partition_faces / 16 * partitions_.size();
   }
   /// and some to remove in a round.
   [[nodiscard]] bool is_late() const {
-    const std::size_t few = std::max(state_.partition_faces / 16, 4 * partitions_.size());
+    const std::size_t few = std::max(state_.sizes.partition_faces / 16, 4 * partitions_.size());
     return state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;
   }
   /// Half as many partitions, with less interface between them.

@@ -72,6 +72,16 @@ Result<Frame> frame_of(std::span<const Point> points, IsUsed&& is_used) {
   return frame;
 }
 
+/// In local coordinates.
+template <class Point>
+std::array<float, 3> local_of(const Point& point, const Frame& frame) {
+  std::array<float, 3> x;
+  for (int k = 0; k < 3; ++k)
+    x[static_cast<std::size_t>(k)] =
+        static_cast<float>((static_cast<double>(point[k]) - frame.centre[k]) * frame.scale);
+  return x;
+}
+
 template <class Point>
 Point point_of(const std::array<float, 3>& local, const Frame& frame) {
   Point point;

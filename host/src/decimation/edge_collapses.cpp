@@ -1,8 +1,0 @@
-#include "decimation/edge_collapse_runs.h"
-
-namespace vkmesh::detail {
-
-template Result<Outcome> run_edge_collapses<false>(DecimationState&, const DecimateOptions&, bool,
-                                                   const Progress&);
-
-}  // namespace vkmesh::detail

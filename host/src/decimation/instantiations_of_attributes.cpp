@@ -1,0 +1,7 @@
+#include "decimation/main_loop.h"
+
+namespace vkmesh::detail {
+
+template Result<Outcome> remove_cheapest<true>(DecimationState&, DecimateOperation, const Progress&);
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,85 @@
+// The main loop, compiled for each removal, order and cost: half in instantiations.cpp, half in
+// instantiations_of_attributes.cpp, since it takes long.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <utility>
+
+#include "decimation/edge_collapses.h"
+#include "decimation/legality/criteria.h"
+#include "decimation/order/collapse_queues.h"
+#include "decimation/parallel/partitioned_collapses.h"
+#include "decimation/removals.h"
+#include "decimation/vertex_removals.h"
+
+namespace vkmesh::detail {
+
+/// How much of the way to the nearest target is done, from 0 to 1.
+inline double progress_of(const DecimationState& state, std::size_t first_faces, std::size_t first_vertices) {
+  const auto share = [](std::size_t first, std::size_t now, std::size_t last) {
+    return first <= last ? 1.0 : static_cast<double>(first - now) / static_cast<double>(first - last);
+  };
+  return std::min(1.0, std::max(share(first_faces, state.faces, state.limits.faces),
+                                share(first_vertices, state.vertices, state.limits.vertices)));
+}
+
+/// `Removals` has, as PartitionedCollapses does, fill(), step(), kStep, how many removals a step is about,
+/// and count_blocked(), which counts what blocks the candidates that are left.
+template <class Removals>
+Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
+  Removals removals(state);
+  if (!state.reached()) removals.fill();
+  const std::size_t first_faces = state.faces, first_vertices = state.vertices;
+  for (std::size_t steps = 0; !state.reached(); ++steps) {
+    if (steps % (kRemovalsBetweenReports / Removals::kStep) == 0) {
+      if (progress && !progress(progress_of(state, first_faces, first_vertices)))
+        return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - state.limits.begun;
+      if (passed.count() >= state.limits.seconds) {
+        state.outcome.stop = DecimateStop::kTimeLimit;
+        break;
+      }
+    }
+    if (removals.step()) continue;
+    removals.count_blocked();
+    const bool by_error = state.outcome.blocked[Reason::kErrorBound] > 0;
+    state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
+    break;
+  }
+  if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+  return std::move(state.outcome);
+}
+
+/// Costs that may fall, as those of criteria, need a heap.
+template <class Placement, bool kAttributes>
+Result<Outcome> collapse_edges(DecimationState& state, const Progress& progress) {
+  if (state.criteria != nullptr && state.criteria->ranks())
+    return run_removals<PartitionedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state,
+                                                                                              progress);
+  return run_removals<PartitionedCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
+}
+
+template <bool kAttributes>
+Result<Outcome> remove_vertices(DecimationState& state, const Progress& progress) {
+  if (state.criteria != nullptr && state.criteria->ranks())
+    return run_removals<VertexRemovals<ExactQueue, kAttributes>>(state, progress);
+  return run_removals<VertexRemovals<LazyQueue, kAttributes>>(state, progress);
+}
+
+template <bool kAttributes>
+Result<Outcome> remove_cheapest(DecimationState& state, DecimateOperation operation,
+                                const Progress& progress) {
+  switch (operation) {
+    case DecimateOperation::kEdgeCollapse:
+      return collapse_edges<OptimalPlacement, kAttributes>(state, progress);
+    case DecimateOperation::kHalfEdgeCollapse:
+      return collapse_edges<EndPlacement, kAttributes>(state, progress);
+    case DecimateOperation::kVertexRemoval:
+      break;
+  }
+  return remove_vertices<kAttributes>(state, progress);
+}
+
+}  // namespace vkmesh::detail

@@ -1,0 +1,93 @@
+#include "decimation/setup/prepare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace vkmesh::detail {
+namespace {
+
+/// Whether two corners at one vertex are of one group and have the same values of all attributes.
+bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t d) {
+  const auto& groups = options.corner_groups;
+  if (!groups.empty() && groups[c] != groups[d]) return false;
+  return std::all_of(options.attributes.begin(), options.attributes.end(), [&](const DecimateAttribute& a) {
+    if (a.corners.empty() || a.corners[c] == a.corners[d]) return true;
+    const auto value = [&](std::uint32_t corner) {
+      return a.values.subspan(std::size_t{a.corners[corner]} * a.components, a.components);
+    };
+    return std::ranges::equal(value(c), value(d));
+  });
+}
+
+}  // namespace
+
+void lock_vertices(CollapseMesh& mesh, std::span<const std::uint32_t> corners,
+                   const DecimateOptions& options) {
+  const DecimateLocks& locks = options.locked;
+  if (!locks.vertices.empty() || !locks.edges.empty() || !locks.faces.empty()) {
+    std::vector<bool> locked(mesh.apex(), false);
+    for (const std::uint32_t v : locks.vertices) locked[v] = true;
+    for (const std::uint32_t h : locks.edges)
+      for (const std::uint32_t c : {h, h % 3 == 2 ? h - 2 : h + 1}) locked[corners[c]] = true;
+    for (const std::uint32_t f : locks.faces)
+      for (std::size_t i = 0; i < 3; ++i) locked[corners[3 * f + i]] = true;
+    for (std::uint32_t v = 0; v < mesh.apex(); ++v)
+      if (locked[mesh.vertices[v].source]) mesh.vertices[v].source |= VertexRecord::kLocked;
+  }
+  if (options.curves.boundary != DecimateBoundary::kKept) return;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+    for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
+      if (mesh.is_ghost(mesh.twin(h))) mesh.vertices[mesh.origin(h)].source |= VertexRecord::kLocked;
+}
+
+std::optional<Wedges> find_wedges(CollapseMesh& mesh, std::size_t vertex_count,
+                                  const DecimateOptions& options) {
+  if (options.attributes.empty() && options.corner_groups.empty()) return std::nullopt;
+  return std::make_optional<Wedges>(
+      mesh, vertex_count, [&](std::uint32_t c, std::uint32_t d) { return same_values(options, c, d); });
+}
+
+ConstraintWeights constraint_weights(const DecimateCurves& curves, const std::optional<Wedges>& wedges) {
+  ConstraintWeights weights;
+  if (curves.boundary == DecimateBoundary::kInShape)
+    weights.boundary = static_cast<float>(curves.boundary_weight);
+  if (curves.crease_angle) {
+    weights.crease = static_cast<float>(curves.crease_weight);
+    weights.crease_cosine = static_cast<float>(std::cos(*curves.crease_angle));
+  }
+  if (wedges) {
+    weights.seam = static_cast<float>(curves.seam_weight);
+    weights.wedges = &*wedges;
+  }
+  return weights;
+}
+
+Limits limits_of(const DecimateOptions& options, std::size_t faces, const Frame& frame) {
+  Limits limits;
+  limits.faces = options.target.faces.value_or(0);
+  if (options.target.ratio) {
+    const auto share = std::llround(*options.target.ratio * static_cast<double>(faces));
+    limits.faces = std::max(limits.faces, static_cast<std::size_t>(share));
+  }
+  limits.vertices = options.target.vertices.value_or(0);
+  if (options.target.seconds) limits.seconds = *options.target.seconds;
+  if (options.bounds.error) {
+    const double error = frame.scale * options.bounds.error->in_units(frame.diagonal);
+    limits.error2 = error * error;
+  }
+  limits.cos_deviation = static_cast<float>(std::cos(options.bounds.normal_deviation));
+  return limits;
+}
+
+double mean_weight_of(const CollapseMesh& mesh) {
+  constexpr std::size_t kSample = 4096;
+  const std::size_t all = mesh.apex(), count = std::min(all, kSample);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i)
+    sum += static_cast<double>(mesh.vertices[count == all ? i : spread_evenly(i, all)].weight);
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+}  // namespace vkmesh::detail
