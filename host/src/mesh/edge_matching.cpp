@@ -128,11 +128,11 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
   };
 
   Matching matching;
-  ConsolidateReport& report = matching.report;
-  report.points = point_count;
-  report.faces = face_count;
+  EdgeDefects& defects = matching.defects;
+  defects.points = point_count;
+  defects.faces = face_count;
 
-  Defect torn;
+  Defect vertices;
   const auto degenerate = parallel_sum<Defect>(face_count, kGrain, [&](std::size_t first, std::size_t last) {
     Defect defect;
     for (std::size_t f = first; f < last; ++f)
@@ -176,33 +176,33 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
       }
       return counts;
     });
-    report.isolated_points = fans.isolated;
+    defects.isolated_points = fans.isolated;
     if (fans.met != corners.size()) {
       // Some vertex has faces that its fan does not meet: they form another fan.
       std::vector<std::uint32_t> degree(point_count, 0);
       for (const std::uint32_t c : corners) ++degree[c];
       for (std::size_t v = 0; v < point_count; ++v)
         if (degree[v] != 0 && fan_size(matching.leading[v], matching.twin, face_offsets) != degree[v])
-          torn.add([&] { return "point " + std::to_string(v); });
+          vertices.add([&] { return "point " + std::to_string(v); });
     }
   } else {
     std::vector<bool> used(point_count, false);
     for (const std::uint32_t c : all_corners) used[c] = true;
-    report.isolated_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
+    defects.isolated_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
   }
 
-  report.edges = edges.edges;
-  report.boundary_edges = edges.boundary;
-  report.degenerate_faces = degenerate.count;
-  report.non_manifold_edges = edges.non_manifold.count;
-  report.misoriented_edges = edges.misoriented.count;
-  report.non_manifold_vertices = torn.count;
-  append(report.defects, degenerate, "degenerate face", "degenerate faces");
-  append(report.defects, edges.non_manifold, "edge with three or more faces",
+  defects.edges = edges.edges;
+  defects.boundary_edges = edges.boundary;
+  defects.degenerate_faces = degenerate.count;
+  defects.non_manifold_edges = edges.non_manifold.count;
+  defects.misoriented_edges = edges.misoriented.count;
+  defects.non_manifold_vertices = vertices.count;
+  append(defects.sentence, degenerate, "degenerate face", "degenerate faces");
+  append(defects.sentence, edges.non_manifold, "edge with three or more faces",
          "edges with three or more faces");
-  append(report.defects, edges.misoriented, "edge whose two faces disagree in orientation",
+  append(defects.sentence, edges.misoriented, "edge whose two faces disagree in orientation",
          "edges whose two faces disagree in orientation");
-  append(report.defects, torn, "point where separate fans of faces meet",
+  append(defects.sentence, vertices, "point where separate fans of faces meet",
          "points where separate fans of faces meet");
   return matching;
 }

@@ -1,20 +1,39 @@
-// Which faces share an edge: the core of consolidation.
+// Pairs the half-edges of faces that share an edge: what turns an indexed face set into a half-edge mesh.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <vkmesh/base/result.h>
-#include <vkmesh/repair/consolidate.h>
 
 namespace vkmesh::detail {
 
-/// What `match_edges` found: the arrays of a HalfEdgeMesh, and the report. `leading` and the count of
-/// non-manifold vertices are filled only when every edge is in order.
+/// Counts of the elements of a face set, and of those that keep it from being an oriented manifold.
+struct EdgeDefects {
+  std::size_t points = 0, faces = 0;
+  std::size_t edges = 0, boundary_edges = 0;  ///< Edges of faces that are not degenerate.
+  std::size_t isolated_points = 0;            ///< Points that no face uses.
+
+  std::size_t degenerate_faces = 0;    ///< Fewer than three corners, or a point repeated.
+  std::size_t non_manifold_edges = 0;  ///< Three or more faces.
+  std::size_t misoriented_edges = 0;   ///< Two faces that run the same way along the edge.
+  /// Points whose faces form more than one fan; 0 while an edge or a face has a defect.
+  std::size_t non_manifold_vertices = 0;
+  /// One sentence that counts the defects, each with its first element; empty when there are none.
+  std::string sentence;
+
+  [[nodiscard]] bool none() const {
+    return degenerate_faces + non_manifold_edges + misoriented_edges + non_manifold_vertices == 0;
+  }
+};
+
+/// The arrays of a HalfEdgeMesh, as far as the defects allow: `leading` is filled only where every face and
+/// every edge is in order.
 struct Matching {
-  ConsolidateReport report;
+  EdgeDefects defects;
   std::vector<std::uint32_t> twin;
   std::vector<std::uint32_t> leading;
 };

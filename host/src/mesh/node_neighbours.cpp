@@ -52,7 +52,7 @@ Result<HalfEdgeMesh> to_half_edge_mesh(const NodeNeighbours& neighbours) {
       }
     }
     VKMESH_TRY(detail::Matching matching, detail::match_edges(vertices, corners, {}));
-    if (!matching.report.manifold()) return unsuitable();
+    if (!matching.defects.none()) return unsuitable();
     HalfEdgeMesh mesh =
         HalfEdgeMesh::from_arrays(std::move(corners), std::move(matching.twin), std::move(matching.leading));
 

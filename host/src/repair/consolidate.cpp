@@ -17,8 +17,23 @@
 namespace vkmesh {
 namespace {
 
-tl::unexpected<Error> not_manifold(const ConsolidateReport& report) {
-  return fail(ErrorCode::kUnsuitable, "not an oriented manifold mesh: " + report.defects);
+tl::unexpected<Error> not_manifold(const std::string& defects) {
+  return fail(ErrorCode::kUnsuitable, "not an oriented manifold mesh: " + defects);
+}
+
+ConsolidateReport report_of(detail::EdgeDefects found) {
+  ConsolidateReport report;
+  report.points = found.points;
+  report.faces = found.faces;
+  report.edges = found.edges;
+  report.boundary_edges = found.boundary_edges;
+  report.isolated_points = found.isolated_points;
+  report.degenerate_faces = found.degenerate_faces;
+  report.non_manifold_edges = found.non_manifold_edges;
+  report.misoriented_edges = found.misoriented_edges;
+  report.non_manifold_vertices = found.non_manifold_vertices;
+  report.defects = std::move(found.sentence);
+  return report;
 }
 
 /// Turns every face of `faces` over, its first corner staying the first.
@@ -116,7 +131,7 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     mesh = std::move(welded.mesh);
   }
   VKMESH_TRY(detail::Matching matching, match(mesh));
-  ConsolidateReport& report = result.report = std::move(matching.report);
+  ConsolidateReport& report = result.report = report_of(std::move(matching.defects));
   if (options.weld) {
     report.welded_points = welded.merged_points;
     report.largest_weld_move = welded.largest_move;
@@ -125,7 +140,7 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
   if (report.manifold()) {
     result.face_set = std::move(mesh);
   } else if (options.strict) {
-    return not_manifold(report);
+    return not_manifold(report.defects);
   } else {
     VKMESH_TRY(detail::Repaired repaired, detail::repair(mesh, options.cut_non_orientable, report, progress));
     mesh = {};
@@ -191,14 +206,14 @@ Result<Consolidated> consolidate(IndexedFaceSet mesh, const ConsolidateOptions& 
 Result<ConsolidateReport> survey(const IndexedFaceSet& mesh) {
   return detail::catching([&]() -> Result<ConsolidateReport> {
     VKMESH_TRY(detail::Matching matching, match(mesh));
-    return std::move(matching.report);
+    return report_of(std::move(matching.defects));
   });
 }
 
 Result<HalfEdgeMesh> to_half_edge_mesh(const IndexedFaceSet& mesh) {
   return detail::catching([&]() -> Result<HalfEdgeMesh> {
     VKMESH_TRY(detail::Matching matching, match(mesh));
-    if (!matching.report.manifold()) return not_manifold(matching.report);
+    if (!matching.defects.none()) return not_manifold(matching.defects.sentence);
     return HalfEdgeMesh::from_arrays(mesh.corners, std::move(matching.twin), std::move(matching.leading),
                                      mesh.face_offsets);
   });

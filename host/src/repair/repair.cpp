@@ -215,7 +215,7 @@ class Repair {
     const std::span<const std::uint32_t> offsets = mesh_.face_offsets;
     VKMESH_TRY(matching_,
                match_edges(mesh_.points.size(), mesh_.corners, triangles ? offsets.first(0) : offsets));
-    return matching_.report.manifold();
+    return matching_.defects.none();
   }
 
   Repaired finish() {
