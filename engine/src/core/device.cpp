@@ -6,7 +6,6 @@
 #include <vkmesh/base/exceptions_to_result.h>
 
 #include "core/spirv.h"
-#include "draw/pipelines.h"
 
 namespace vkmesh::detail {
 namespace {
@@ -174,14 +173,6 @@ Result<void> Device::initialise(const PhysicalDevice& physical) {
   timestamp_bits = families[queue_family].timestampValidBits;
   draws = (families[queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
   return {};
-}
-
-Result<DrawPipelines*> Device::draw_pipelines() {
-  const std::lock_guard lock(draw_pipelines_mutex_);
-  if (!draw_pipelines_) {
-    VKMESH_TRY(draw_pipelines_, DrawPipelines::create(*this));
-  }
-  return draw_pipelines_.get();
 }
 
 Result<void> Device::submit(const VkSubmitInfo& submit_info, VkFence fence) {

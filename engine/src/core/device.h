@@ -84,6 +84,7 @@ class Device {
   /// measurements of what exactness costs. Before the first call of kernel() for the name.
   [[nodiscard]] Result<void> replace_kernel(const KernelSource& source);
   /// What drawing needs, made at the first call. Errors: kNoDevice where the device or its queue cannot draw.
+  /// Defined with DrawPipelines.
   [[nodiscard]] Result<DrawPipelines*> draw_pipelines();
   [[nodiscard]] Result<void> submit(const VkSubmitInfo& submit, VkFence fence);
   void set_name(VkObjectType type, std::uint64_t object, const std::string& name) const;
@@ -129,7 +130,7 @@ class Device {
   };
   std::map<std::string, CachedKernel, std::less<>> kernels_;
   std::mutex draw_pipelines_mutex_;
-  std::unique_ptr<DrawPipelines> draw_pipelines_;
+  std::shared_ptr<DrawPipelines> draw_pipelines_;  ///< Shared, so that only `draw` need know the type.
 };
 
 /// Runs the arithmetic of the shaders on chosen values. Errors: kNoDevice, naming the function whose result

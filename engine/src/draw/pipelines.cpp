@@ -69,6 +69,14 @@ Result<std::unique_ptr<DrawPipelines>> DrawPipelines::create(Device& device) {
   return result;
 }
 
+Result<DrawPipelines*> Device::draw_pipelines() {
+  const std::lock_guard lock(draw_pipelines_mutex_);
+  if (!draw_pipelines_) {
+    VKMESH_TRY(draw_pipelines_, DrawPipelines::create(*this));
+  }
+  return draw_pipelines_.get();
+}
+
 DrawPipelines::~DrawPipelines() {
   const auto& vk = device_.functions;
   for (const auto& [key, pipeline] : pipelines_) vk.vkDestroyPipeline(device_.handle, pipeline, nullptr);
