@@ -1,4 +1,4 @@
-// Fuzzes consolidate(), survey() and validate(): the judgement is that of a slow count, and what is taken is
+// Fuzzes consolidate(), diagnose() and validate(): the judgement is that of a slow count, and what is taken is
 // a valid mesh that repeats the faces given.
 #include <algorithm>
 #include <cstddef>
@@ -144,7 +144,7 @@ void require_unchanged(const Consolidated& made, const IndexedFaceSet& mesh) {
 void fuzz(std::span<const std::uint8_t> bytes) {
   const IndexedFaceSet mesh = face_set_of(bytes);
   const ConsolidateReport slow = slow_survey(mesh);
-  const auto report = survey(mesh);
+  const auto report = diagnose(mesh);
   require(report.has_value(), "any face set is surveyed");
   require_same(*report, slow);
 

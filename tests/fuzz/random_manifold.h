@@ -219,7 +219,7 @@ class RandomManifold {
     IndexedFaceSet mesh;
     mesh.points.resize(points_.size());
     mesh.corners = corners();
-    const auto report = survey(mesh);
+    const auto report = diagnose(mesh);
     if (!report || !report->manifold() || faces_.empty()) faces_ = before;
   }
 

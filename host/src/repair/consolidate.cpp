@@ -203,7 +203,7 @@ Result<Consolidated> consolidate(IndexedFaceSet mesh, const ConsolidateOptions& 
   return detail::catching([&] { return run(std::move(mesh), options, progress); });
 }
 
-Result<ConsolidateReport> survey(const IndexedFaceSet& mesh) {
+Result<ConsolidateReport> diagnose(const IndexedFaceSet& mesh) {
   return detail::catching([&]() -> Result<ConsolidateReport> {
     VKMESH_TRY(detail::Matching matching, match(mesh));
     return report_of(std::move(matching.defects));

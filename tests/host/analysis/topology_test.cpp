@@ -143,7 +143,7 @@ TEST_CASE("topology agrees with consolidation on meshes in any order", "[topolog
   for (const IndexedFaceSet& mesh : {test::torus(9, 7), test::cylinder(5, 8), test::fin(), test::bow_tie(),
                                      test::both(test::grid(3, 3), test::fin(), Vec3(9.0f))}) {
     const SurfaceTopology t = topology_of(mesh);
-    const auto report = survey(mesh);
+    const auto report = diagnose(mesh);
     REQUIRE(report);
     CHECK(t.whole.edges == report->edges);
     CHECK(t.whole.boundary_edges == report->boundary_edges);

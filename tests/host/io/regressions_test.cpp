@@ -140,7 +140,7 @@ TEST_CASE("files that broke something are read or refused", "[io][regressions]")
     CHECK(mesh->points.size() == expected->second.points);
     CHECK(mesh->face_count() == expected->second.faces);
     CHECK(test::codes(file->notes) == expected->second.codes);
-    CHECK(survey(*mesh));
+    CHECK(diagnose(*mesh));
   }
   CHECK(known == kRefusals.size() + kMeshes.size());
 }

@@ -12,7 +12,7 @@ using namespace vkmesh;
 namespace {
 
 ConsolidateReport report_of(const IndexedFaceSet& mesh) {
-  const auto report = survey(mesh);
+  const auto report = diagnose(mesh);
   if (!report) FAIL(report.error().describe());
   return *report;
 }

@@ -33,7 +33,7 @@ Consolidated mended(const IndexedFaceSet& mesh, const ConsolidateOptions& option
   CHECK(result->mesh.vertex_count() == set.points.size());
   CHECK(result->mesh.face_count() == set.face_count());
   // The faces alone say the same as the half-edges: nothing is lost by writing them to a file.
-  const auto again = survey(set);
+  const auto again = diagnose(set);
   REQUIRE(again);
   CHECK(again->manifold());
   // No point moved.

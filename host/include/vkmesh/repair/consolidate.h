@@ -102,7 +102,7 @@ struct Consolidated {
                                                const Progress& progress = {});
 
 /// What consolidate() would find, without changing or building anything. O(n). Errors: kUsage, kOutOfMemory.
-[[nodiscard]] Result<ConsolidateReport> survey(const IndexedFaceSet& mesh);
+[[nodiscard]] Result<ConsolidateReport> diagnose(const IndexedFaceSet& mesh);
 
 /// The half-edges of a mesh that is an oriented manifold: vertex i is point i, half-edge i is corner i, face
 /// i is face i. O(n). Errors: kUnsuitable with every defect counted in one sentence; kUsage, kOutOfMemory.
