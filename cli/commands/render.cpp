@@ -427,7 +427,7 @@ Result<Camera> camera_for(std::span<const Vec3> points, double shape, const Rend
   framing.up = options.up == "z" ? UpAxis::kZ : UpAxis::kY;
   framing.projection = options.orthographic ? Projection::kOrthographic : Projection::kPerspective;
   framing.field_of_view = options.field_of_view;
-  VKMESH_TRY(Camera camera, vkmesh::frame(points, shape, framing));
+  VKMESH_TRY(Camera camera, vkmesh::frame_camera(points, shape, framing));
   if (plan.eye) {
     camera.eye = *plan.eye;
     if (plan.target) camera.target = *plan.target;

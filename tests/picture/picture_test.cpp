@@ -224,7 +224,7 @@ TEST_CASE("a framing sees every point, and none could stand nearer") {
           CAPTURE(static_cast<int>(projection), static_cast<int>(up), elevation, shape);
           const FramingOptions options{
               .azimuth = 50, .elevation = elevation, .up = up, .projection = projection};
-          const Camera camera = value(frame(mesh.points, shape, options));
+          const Camera camera = value(frame_camera(mesh.points, shape, options));
           const CameraAxes axes = value(axes_of(camera));
           double x_most = 0, y_most = 0;
           for (const Vec3& p : mesh.points) {
@@ -246,7 +246,7 @@ TEST_CASE("a framing sees every point, and none could stand nearer") {
 TEST_CASE("azimuth and elevation turn the camera as documented") {
   const std::vector<Vec3> points = {{-1, -1, -1}, {1, 1, 1}};
   const auto axes = [&](double azimuth, double elevation, UpAxis up) {
-    return value(axes_of(value(frame(points, 1, {.azimuth = azimuth, .elevation = elevation, .up = up}))));
+    return value(axes_of(value(frame_camera(points, 1, {.azimuth = azimuth, .elevation = elevation, .up = up}))));
   };
   const auto near = [](const DVec3& a, const DVec3& b) {
     return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) < 1e-9;
@@ -261,16 +261,16 @@ TEST_CASE("azimuth and elevation turn the camera as documented") {
 }
 
 TEST_CASE("framings of nothing and of a single point are cameras; wrong options are refused") {
-  CHECK(frame({}, 1));
+  CHECK(frame_camera({}, 1));
   const std::vector<Vec3> one = {{3, 4, 5}};
-  const Camera camera = value(frame(one, 1));
+  const Camera camera = value(frame_camera(one, 1));
   CHECK(camera.near < camera.far);
   CHECK(axes_of(camera));
-  CHECK_FALSE(frame(one, 0));
-  CHECK_FALSE(frame(one, 1, {.elevation = 91}));
-  CHECK_FALSE(frame(one, 1, {.azimuth = std::numeric_limits<double>::quiet_NaN()}));
-  CHECK_FALSE(frame(one, 1, {.field_of_view = 0}));
-  CHECK_FALSE(frame(one, 1, {.margin = 0.5}));
+  CHECK_FALSE(frame_camera(one, 0));
+  CHECK_FALSE(frame_camera(one, 1, {.elevation = 91}));
+  CHECK_FALSE(frame_camera(one, 1, {.azimuth = std::numeric_limits<double>::quiet_NaN()}));
+  CHECK_FALSE(frame_camera(one, 1, {.field_of_view = 0}));
+  CHECK_FALSE(frame_camera(one, 1, {.margin = 0.5}));
 }
 
 TEST_CASE("edges know how many faces they have") {

@@ -91,7 +91,7 @@ TEST_CASE("GPU-assisted validation sees reads past the end of a buffer, of kerne
   compute(geometry.triangles + 1);
   check_named(*context, "access out of bounds");
 
-  const Camera camera = require(frame(mesh.points, 1.0));
+  const Camera camera = require(frame_camera(mesh.points, 1.0));
   for (const DrawMode mode : {DrawMode::kFlat, DrawMode::kPoints}) {
     RenderTarget target = require(RenderTarget::create(*context, 16, 16));
     geometry = on_device.geometry();

@@ -245,7 +245,7 @@ TEST_CASE("the normal colours of a cube are its six", "[draw]") {
     }
   // From a corner three faces are seen, each of one colour.
   const Camera corner = value(
-      frame(box.points, 1.0, {.azimuth = 40, .elevation = 30, .projection = Projection::kOrthographic}));
+      frame_camera(box.points, 1.0, {.azimuth = 40, .elevation = 30, .projection = Projection::kOrthographic}));
   const Picture picture = draw(box, style, corner);
   std::map<std::tuple<int, int, int>, int> colors;
   for (const Color& c : picture.pixels()) ++colors[{c.r, c.g, c.b}];
@@ -557,7 +557,7 @@ TEST_CASE("meshes far from zero keep their shape", "[draw]") {
   IndexedFaceSet far_away = sphere;
   for (Vec3& p : far_away.points) p += Vec3(1048576.0f, -1048576.0f, 1048576.0f);
   const auto picture = [&](const IndexedFaceSet& mesh) {
-    return draw(mesh, {.mode = DrawMode::kFlat}, value(frame(mesh.points, 1.0)));
+    return draw(mesh, {.mode = DrawMode::kFlat}, value(frame_camera(mesh.points, 1.0)));
   };
   CHECK(largest_difference(picture(sphere), picture(far_away)) <= 2);
 }
@@ -571,7 +571,7 @@ TEST_CASE("pictures look like their references", "[draw]") {
   const std::vector<float> curvature = value(mean_curvatures(mesh, edges, angles));
   const DrawMesh on_device = value(
       DrawMesh::create(test_context(), mesh, {.normals = normals, .values = curvature, .spacing = spacing}));
-  const Camera camera = value(frame(mesh.points, 4.0 / 3.0, {.azimuth = 25, .elevation = 35}));
+  const Camera camera = value(frame_camera(mesh.points, 4.0 / 3.0, {.azimuth = 25, .elevation = 35}));
   const auto picture = [&](const DrawStyle& style) {
     return draw(on_device.geometry(), style, camera, 160, 120);
   };
