@@ -259,7 +259,7 @@ Result<void> measure(Subject& subject, const IndexedFaceSet& polygons, const Ren
     VKMESH_TRY(subject.values, valences(polygons, edges));
     subject.legend.title = "valence, edges at a point";
   } else if (color == "component") {
-    VKMESH_TRY(Components parts, components(polygons));
+    VKMESH_TRY(ConnectedComponents parts, connected_components(polygons));
     subject.values = std::move(parts.of_point);
     subject.json["components"] = parts.faces.size();
     // Beyond the table the colours begin anew.

@@ -342,7 +342,7 @@ TEST_CASE("valences, components and qualities of known meshes") {
   const IndexedFaceSet box = cube();
   for (const std::uint32_t c : box.corners) two.corners.push_back(c + 5);
   two.points.insert(two.points.end(), box.points.begin(), box.points.end());
-  const Components parts = value(components(two));
+  const ConnectedComponents parts = value(connected_components(two));
   CHECK(parts.faces == std::vector<std::size_t>{12, 4});
   CHECK(parts.of_point[0] == 1.0f);
   CHECK(std::isnan(parts.of_point[4]));

@@ -240,8 +240,8 @@ Result<std::vector<float>> valences(const IndexedFaceSet& mesh, std::span<const 
   });
 }
 
-Result<Components> components(const IndexedFaceSet& mesh) {
-  return detail::catching([&]() -> Result<Components> {
+Result<ConnectedComponents> connected_components(const IndexedFaceSet& mesh) {
+  return detail::catching([&]() -> Result<ConnectedComponents> {
     VKMESH_CHECK(require_points(mesh));
     std::vector<std::uint32_t> parent(mesh.points.size());
     std::iota(parent.begin(), parent.end(), std::uint32_t{0});
@@ -265,7 +265,7 @@ Result<Components> components(const IndexedFaceSet& mesh) {
       if (faces[v] > 0) roots.push_back(v);
     std::stable_sort(roots.begin(), roots.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return faces[a] > faces[b]; });
-    Components result;
+    ConnectedComponents result;
     std::vector<float> number(mesh.points.size(), kNaN);
     for (std::size_t i = 0; i < roots.size(); ++i) {
       number[roots[i]] = static_cast<float>(i);

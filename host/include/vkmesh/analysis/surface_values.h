@@ -51,13 +51,13 @@ struct SurfaceEdge {
 [[nodiscard]] Result<std::vector<float>> valences(const IndexedFaceSet& mesh,
                                                   std::span<const SurfaceEdge> edges);
 
-struct Components {
+struct ConnectedComponents {
   std::vector<float> of_point;     ///< Number of the component; NaN for a point of no face.
   std::vector<std::size_t> faces;  ///< Of each component, in descending order.
 };
 /// Faces that share points hang together. Components are numbered by faces, the largest 0; equal ones in
 /// order of their first point.
-[[nodiscard]] Result<Components> components(const IndexedFaceSet& mesh);
+[[nodiscard]] Result<ConnectedComponents> connected_components(const IndexedFaceSet& mesh);
 
 /// For each triangle 4√3 area / (sum of squared sides): 1 if equilateral, 0 without area. Errors: kUnsuitable
 /// for polygons.
