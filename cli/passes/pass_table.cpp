@@ -128,7 +128,7 @@ Pass<SurfaceMeasures> surface_measures_pass() {
 Pass<Floats> collapse_costs_pass(const CollapseCostOptions& options) {
   return {
       .host = on_host<Floats>([options](const PassInput& in, const Progress&) -> Result<Floats> {
-        VKMESH_TRY(const std::vector<VertexQuadric> planes, quadrics(in.mesh, in.positions, options));
+        VKMESH_TRY(const std::vector<VertexQuadric> planes, vertex_quadrics(in.mesh, in.positions, options));
         return collapse_costs(in.mesh, in.positions, planes, options);
       }),
 #ifdef VKMESH_HAS_VULKAN

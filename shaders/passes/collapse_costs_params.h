@@ -1,10 +1,10 @@
-// Push constants of quadrics.comp and collapse_costs.comp.
+// Push constants of vertex_quadrics.comp and collapse_costs.comp.
 #ifndef VKMESH_COLLAPSE_COSTS_PARAMS_H
 #define VKMESH_COLLAPSE_COSTS_PARAMS_H
 
 #include "lib/params.h"
 
-/// quadrics.comp: i is a vertex.
+/// vertex_quadrics.comp: i is a vertex.
 VKMESH_PARAMS(QuadricsParams) {
   uint first;
   uint count;

@@ -11,7 +11,7 @@ Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh, DeviceC
                                    const CollapseCostOptions& options) {
   VKMESH_CHECK(detail::require_collapse_cost_options(options));
   using Q = kernels::QuadricsParams;
-  VKMESH_CHECK(Dispatch<Q>(recorder, shaders::quadrics, mesh.vertex_count())
+  VKMESH_CHECK(Dispatch<Q>(recorder, shaders::vertex_quadrics, mesh.vertex_count())
                    .read(&Q::positions, mesh.positions())
                    .read(&Q::corners, mesh.corners())
                    .read(&Q::twins, mesh.twins())

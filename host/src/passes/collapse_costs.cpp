@@ -18,7 +18,7 @@ namespace {
 
 Result<void> check(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                    const CollapseCostOptions& options) {
-  VKMESH_CHECK(detail::require_triangles(mesh, "quadrics"));
+  VKMESH_CHECK(detail::require_triangles(mesh, "vertex_quadrics"));
   VKMESH_CHECK(detail::require_positions(positions, mesh.vertex_count()));
   return detail::require_collapse_cost_options(options);
 }
@@ -154,7 +154,7 @@ CollapseCostOptions unit_frame(std::span<const Vec3> positions) {
   return options;
 }
 
-Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+Result<std::vector<VertexQuadric>> vertex_quadrics(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
                                             const CollapseCostOptions& options) {
   return detail::catching([&]() -> Result<std::vector<VertexQuadric>> {
     VKMESH_CHECK(check(mesh, positions, options));

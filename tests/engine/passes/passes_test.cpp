@@ -78,7 +78,8 @@ void check_exact_costs(const HalfEdgeMesh& mesh, std::span<const Vec3> points) {
     run(mesh, points, [&](Recorder& recorder, DeviceMesh& device) {
       return record_collapse_costs(recorder, device, result, options);
     });
-    const auto found = require(result.quadrics.download()), wanted = require(quadrics(mesh, points, options));
+    const auto found = require(result.quadrics.download()),
+               wanted = require(vertex_quadrics(mesh, points, options));
     CHECK(differences(std::span(found.empty() ? nullptr : found[0].data(), 6 * found.size()),
                       std::span(wanted.empty() ? nullptr : wanted[0].data(), 6 * wanted.size())) == 0);
     CHECK(differences(require(result.costs.download()),

@@ -124,7 +124,7 @@ struct Result3 {
 };
 Result3 costs_of(const IndexedFaceSet& set, const CollapseCostOptions& options) {
   Result3 result{test::half_edges(set), {}, {}};
-  result.quadrics = quadrics(result.mesh, set.points, options).value();
+  result.quadrics = vertex_quadrics(result.mesh, set.points, options).value();
   result.costs = collapse_costs(result.mesh, set.points, result.quadrics, options).value();
   return result;
 }
@@ -138,7 +138,7 @@ TEST_CASE("quadrics are the planes of the triangles by area, and of boundary edg
       CollapseCostOptions options = unit_frame(set.points);
       options.boundary_weight = boundary_weight;
       const Textbook book = textbook(set, mesh, options);
-      const auto found = quadrics(mesh, set.points, options).value();
+      const auto found = vertex_quadrics(mesh, set.points, options).value();
       REQUIRE(found.size() == set.points.size());
       for (std::size_t v = 0; v < found.size(); ++v) {
         std::array<double, 6> expected{};
@@ -355,7 +355,7 @@ TEST_CASE("collapse costs of degenerate meshes are numbers, and twins agree") {
       const auto costs = collapse_costs(mesh, set.points, own, {.placement = placement}).value();
       for (const float cost : costs) CHECK((cost >= 0.0f && cost <= kLargest));
     }
-  CHECK(quadrics(HalfEdgeMesh{}, {}).value().empty());
+  CHECK(vertex_quadrics(HalfEdgeMesh{}, {}).value().empty());
   CHECK(collapse_costs(HalfEdgeMesh{}, {}, {}).value().empty());
 }
 
@@ -364,16 +364,16 @@ TEST_CASE("collapse costs: errors") {
   const HalfEdgeMesh mesh = test::half_edges(set), polygons = test::half_edges(quads);
   const std::vector<VertexQuadric> eight(8);
   const auto check = [&](const CollapseCostOptions& options) {
-    CHECK(quadrics(mesh, set.points, options).error().code == ErrorCode::kUsage);
+    CHECK(vertex_quadrics(mesh, set.points, options).error().code == ErrorCode::kUsage);
     CHECK(collapse_costs(mesh, set.points, eight, options).error().code == ErrorCode::kUsage);
   };
   for (const float scale : {0.0f, -1.0f, 0x1p-61f, 0x1p61f, NAN}) check({.scale = scale});
   for (const float weight : {-1.0f, 0x1p21f, NAN}) check({.boundary_weight = weight});
   for (const float centre : {0x1p60f, -0x1p60f, NAN}) check({.centre = Vec3(0.0f, centre, 0.0f)});
   const auto few = std::span(set.points).first(7);
-  CHECK(quadrics(mesh, few).error().code == ErrorCode::kUsage);
+  CHECK(vertex_quadrics(mesh, few).error().code == ErrorCode::kUsage);
   CHECK(collapse_costs(mesh, few, eight).error().code == ErrorCode::kUsage);
   CHECK(collapse_costs(mesh, set.points, std::span(eight).first(7)).error().code == ErrorCode::kUsage);
-  CHECK(quadrics(polygons, quads.points).error().code == ErrorCode::kUnsuitable);
+  CHECK(vertex_quadrics(polygons, quads.points).error().code == ErrorCode::kUnsuitable);
   CHECK(collapse_costs(polygons, quads.points, eight).error().code == ErrorCode::kUnsuitable);
 }

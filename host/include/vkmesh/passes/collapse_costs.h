@@ -1,5 +1,5 @@
-// The quadric of every vertex and the cost of collapsing every edge, by the arithmetic that is the same on every
-// device. Decimation computes its own, in the host's (math/quadric.h).
+// The quadric of every vertex and the cost of collapsing every edge, by the arithmetic that is the same on
+// every device. Decimation computes its own, in the host's (math/quadric.h).
 #pragma once
 
 #include <array>
@@ -39,16 +39,16 @@ using VertexQuadric = std::array<float, 6>;
 
 /// M. Garland and P. Heckbert, "Surface simplification using quadric error metrics", 1997: a plane for each
 /// triangle, weighted by its area, summed in ascending order of faces. Entries below 2^-60 are 0. The
-/// reference of shaders/passes/quadrics.comp, equal to it bit for bit. O(faces). Errors: as vertex_normals(),
-/// and kUsage for options out of range.
-[[nodiscard]] Result<std::vector<VertexQuadric>> quadrics(const HalfEdgeMesh& mesh,
-                                                          std::span<const Vec3> positions,
-                                                          const CollapseCostOptions& options = {});
+/// reference of shaders/passes/vertex_quadrics.comp, equal to it bit for bit. O(faces). Errors: as
+/// vertex_normals(), and kUsage for options out of range.
+[[nodiscard]] Result<std::vector<VertexQuadric>> vertex_quadrics(const HalfEdgeMesh& mesh,
+                                                                 std::span<const Vec3> positions,
+                                                                 const CollapseCostOptions& options = {});
 
 /// For each half-edge the quadric error of collapsing its edge, the same for twins: area times squared
 /// distance in scaled units, at least 0; the largest float where that has no value. The reference of
-/// shaders/passes/collapse_costs.comp, equal to it bit for bit. O(half-edges). Errors: as quadrics(), and
-/// kUsage unless one quadric for each vertex.
+/// shaders/passes/collapse_costs.comp, equal to it bit for bit. O(half-edges). Errors: as vertex_quadrics(),
+/// and kUsage unless one quadric for each vertex.
 [[nodiscard]] Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh,
                                                         std::span<const Vec3> positions,
                                                         std::span<const VertexQuadric> quadrics,

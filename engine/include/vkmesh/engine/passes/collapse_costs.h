@@ -15,8 +15,9 @@ struct DeviceCollapseCosts {
   DeviceArray<float> costs;             ///< One a half-edge.
 };
 
-/// Records the passes of which vkmesh::quadrics() and vkmesh::collapse_costs() are the references, equal to
-/// them bit for bit. O(half-edges). Errors: kUsage for options out of range; as DeviceMesh::corner_offsets().
+/// Records the passes of which vkmesh::vertex_quadrics() and vkmesh::collapse_costs() are the references,
+/// equal to them bit for bit. O(half-edges). Errors: kUsage for options out of range; as
+/// DeviceMesh::corner_offsets().
 [[nodiscard]] Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh,
                                                  DeviceCollapseCosts& result,
                                                  const CollapseCostOptions& options);

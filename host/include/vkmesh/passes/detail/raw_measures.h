@@ -19,7 +19,7 @@ struct MeasuresFrame {
 };
 [[nodiscard]] MeasuresFrame frame_of_bounds(Vec3 low, Vec3 high);
 
-/// Errors: kUsage, as quadrics().
+/// Errors: kUsage, as vertex_quadrics().
 [[nodiscard]] Result<void> require_collapse_cost_options(const CollapseCostOptions& options);
 
 }  // namespace vkmesh::detail
