@@ -36,8 +36,8 @@ ConsolidateReport report_of(detail::EdgeDefects found) {
   return report;
 }
 
-/// Turns every face of `faces` over, its first corner staying the first.
-void turn_over(IndexedFaceSet& mesh, const std::vector<std::uint8_t>& faces) {
+/// Flips every face of `faces`; its first corner stays the first.
+void flip_faces(IndexedFaceSet& mesh, const std::vector<std::uint8_t>& faces) {
   std::vector<std::uint32_t> source(mesh.corners.size());
   for (std::uint32_t f = 0, c = 0; f < mesh.face_count(); ++f) {
     const std::uint32_t begin = c, size = static_cast<std::uint32_t>(mesh.face(f).size());
@@ -50,10 +50,10 @@ void turn_over(IndexedFaceSet& mesh, const std::vector<std::uint8_t>& faces) {
   mesh.corner_channels = gather(mesh.corner_channels, source);
 }
 
-/// The faces of closed components that were turned in part and lie inside out.
+/// The faces of closed components of which some faces were flipped and lie inside out.
 std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail::Matching& matching,
-                                       const std::vector<std::uint8_t>& turned) {
-  if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return {};
+                                       const std::vector<std::uint8_t>& flipped) {
+  if (std::find(flipped.begin(), flipped.end(), 1) == flipped.end()) return {};
   const std::size_t faces = mesh.face_count();
   std::vector<std::uint32_t> face_of(mesh.corners.size());
   for (std::uint32_t f = 0, c = 0; f < faces; ++f)
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail:
     if (matching.twin[h] == kInvalid) open[components.find(face_of[h])] = 1;
   for (std::uint32_t f = 0; f < faces; ++f) {
     const std::uint32_t root = components.find(f);
-    if (turned[f]) touched[root] = 1;
+    if (flipped[f]) touched[root] = 1;
     const auto corners = mesh.face(f);
     // Relative to a point of the component, so that surfaces far from zero keep their digits.
     const DVec3 origin(mesh.points[mesh.face(root)[0]]);
@@ -149,12 +149,12 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     result.source_face = std::move(repaired.source_face);
     report.non_manifold_vertices = std::max(report.non_manifold_vertices, report.split_points);
     matching = std::move(repaired.matching);
-    const std::vector<std::uint8_t> inward = inward_faces(result.face_set, matching, repaired.turned);
+    const std::vector<std::uint8_t> inward = inward_faces(result.face_set, matching, repaired.flipped);
     if (std::find(inward.begin(), inward.end(), 1) != inward.end()) {
-      turn_over(result.face_set, inward);
+      flip_faces(result.face_set, inward);
       for (std::size_t f = 0; f < inward.size(); ++f) {
         if (!inward[f]) continue;
-        report.flipped_faces += repaired.turned[f] ? std::size_t(-1) : std::size_t{1};
+        report.flipped_faces += repaired.flipped[f] ? std::size_t(-1) : std::size_t{1};
       }
       VKMESH_TRY(matching, match(result.face_set));
     }
@@ -186,7 +186,7 @@ std::vector<std::string> ConsolidateReport::repairs() const {
   say(removed_degenerate_faces, "face", "faces", "without three distinct points removed");
   say(removed_duplicate_faces, "face", "faces", "with the points of another removed");
   say(mended_polygons, "polygon", "polygons", "that repeated a point mended");
-  say(flipped_faces, "face", "faces", "turned over to agree in orientation");
+  say(flipped_faces, "face", "faces", "flipped to agree in orientation");
   say(cut_components, "component", "components",
       std::string("not orientable, cut along ") + std::to_string(cut_edges) +
           (cut_edges == 1 ? " edge" : " edges"));

@@ -116,30 +116,30 @@ class Repair {
     });
   }
 
-  /// Decides which faces to turn, sheet by sheet.
+  /// Decides which faces to flip, one sheet of edge-connected faces after the other.
   Result<void> orient(bool cut_non_orientable) {
-    turned_.assign(source_face_.size(), 0);
+    flipped_.assign(source_face_.size(), 0);
     std::vector<std::uint8_t> seen(source_face_.size(), 0);
     std::vector<std::uint32_t> sheet;
     for (std::uint32_t seed = 0; seed < source_face_.size(); ++seed) {
       if (seen[seed]) continue;
       sheet.assign(1, seed);
       seen[seed] = 1;
-      std::size_t turned = 0;
+      std::size_t flipped = 0;
       bool cut = false;
       for (std::size_t next = 0; next < sheet.size(); ++next) {
         const std::uint32_t f = sheet[next];
-        turned += turned_[f];
+        flipped += flipped_[f];
         for (std::uint32_t h = mesh_.face_offsets[f]; h < mesh_.face_offsets[f + 1]; ++h) {
           const std::uint32_t g = mate_[h];
           if (g == kInvalid) continue;
           const std::uint32_t other = face_of_[g];
-          const auto wanted = static_cast<std::uint8_t>(turned_[f] ^ (mesh_.corners[h] == mesh_.corners[g]));
+          const auto wanted = static_cast<std::uint8_t>(flipped_[f] ^ (mesh_.corners[h] == mesh_.corners[g]));
           if (!seen[other]) {
             seen[other] = 1;
-            turned_[other] = wanted;
+            flipped_[other] = wanted;
             sheet.push_back(other);
-          } else if (turned_[other] != wanted) {
+          } else if (flipped_[other] != wanted) {
             if (!cut_non_orientable)
               return fail(ErrorCode::kUnsuitable, "the component of face " +
                                                       std::to_string(source_face_[seed]) +
@@ -151,8 +151,8 @@ class Repair {
         }
       }
       report_.cut_components += cut ? 1u : 0u;
-      if (2 * turned > sheet.size())
-        for (const std::uint32_t f : sheet) turned_[f] ^= 1;
+      if (2 * flipped > sheet.size())
+        for (const std::uint32_t f : sheet) flipped_[f] ^= 1;
     }
     return {};
   }
@@ -163,21 +163,21 @@ class Repair {
     for (const std::vector<std::uint32_t>& edge : crowded_) pair_up(edge);
   }
 
-  void turn_faces() {
+  void flip_faces() {
     std::vector<std::uint32_t> mate = mate_;
     for (std::uint32_t f = 0; f < source_face_.size(); ++f) {
-      if (!turned_[f]) continue;
+      if (!flipped_[f]) continue;
       // The first corner stays the first, so half-edge i becomes the i-th from the end.
       const std::uint32_t begin = mesh_.face_offsets[f], end = mesh_.face_offsets[f + 1];
       for (std::vector<std::uint32_t>* values : {&mesh_.corners, &source_corner_})
         std::reverse(values->begin() + begin + 1, values->begin() + end);
-      for (std::uint32_t h = begin; h < end; ++h) mate[turned_place(h)] = mate_[h];
+      for (std::uint32_t h = begin; h < end; ++h) mate[flipped_place(h)] = mate_[h];
     }
     for (std::uint32_t& g : mate)
-      if (g != kInvalid && turned_[face_of_[g]]) g = turned_place(g);
+      if (g != kInvalid && flipped_[face_of_[g]]) g = flipped_place(g);
     mate_ = std::move(mate);
     report_.flipped_faces =
-        static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), std::uint8_t{1}));
+        static_cast<std::size_t>(std::count(flipped_.begin(), flipped_.end(), std::uint8_t{1}));
   }
 
   /// Gives each fan of faces a point of its own.
@@ -222,11 +222,11 @@ class Repair {
     mesh_.normalize_offsets();
     source_point_.resize(mesh_.points.size());
     if (report_.added_points == 0) std::iota(source_point_.begin(), source_point_.end(), 0u);
-    turned_.resize(source_face_.size(), 0);
+    flipped_.resize(source_face_.size(), 0);
     mesh_.point_channels = gather(input_.point_channels, source_point_);
     mesh_.corner_channels = gather(input_.corner_channels, source_corner_);
     mesh_.face_channels = gather(input_.face_channels, source_face_);
-    return {std::move(mesh_), std::move(source_point_), std::move(source_face_), std::move(turned_),
+    return {std::move(mesh_), std::move(source_point_), std::move(source_face_), std::move(flipped_),
             std::move(matching_)};
   }
 
@@ -302,7 +302,7 @@ class Repair {
     const std::uint32_t f = face_of_[h];
     return h + 1 == mesh_.face_offsets[f + 1] ? mesh_.face_offsets[f] : h + 1;
   }
-  std::uint32_t turned_place(std::uint32_t h) const {
+  std::uint32_t flipped_place(std::uint32_t h) const {
     const std::uint32_t f = face_of_[h];
     return mesh_.face_offsets[f] + mesh_.face_offsets[f + 1] - 1 - h;
   }
@@ -338,7 +338,7 @@ class Repair {
     std::vector<Leaf> up, down;
     for (const std::uint32_t h : edge) {
       const DVec3 d = into_face(h);
-      const bool ascending = (mesh_.corners[h] == a) != (turned_[face_of_[h]] != 0);
+      const bool ascending = (mesh_.corners[h] == a) != (flipped_[face_of_[h]] != 0);
       (ascending ? up : down).push_back({h, std::atan2(glm::dot(d, y), glm::dot(d, x))});
     }
     const bool balanced = up.size() == down.size();
@@ -396,7 +396,7 @@ class Repair {
   std::vector<std::uint32_t> face_of_;  ///< Of each corner.
   std::vector<std::uint32_t> mate_;     ///< Of each half-edge, the one across its edge, or kInvalid.
   std::vector<std::vector<std::uint32_t>> crowded_;  ///< The half-edges of edges of three or more faces.
-  std::vector<std::uint8_t> turned_;
+  std::vector<std::uint8_t> flipped_;
   Matching matching_;
   EarClipper clipper_;
   std::vector<std::uint32_t> scratch_;
@@ -422,7 +422,7 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   VKMESH_CHECK(steps.orient(cut_non_orientable));
   VKMESH_CHECK(tick(0.6));
   steps.part_crowded_edges();
-  steps.turn_faces();
+  steps.flip_faces();
   steps.split_points();
   VKMESH_CHECK(tick(0.9));
   VKMESH_TRY(done, steps.done());

@@ -17,7 +17,7 @@ struct Repaired {
   IndexedFaceSet mesh;
   std::vector<std::uint32_t> source_point, source_face;
   /// For each face, whether it runs the other way than in the input.
-  std::vector<std::uint8_t> turned;
+  std::vector<std::uint8_t> flipped;
   Matching matching;  ///< Of `mesh`.
 };
 

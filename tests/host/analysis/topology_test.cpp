@@ -116,7 +116,7 @@ TEST_CASE("topology: an edge of three faces", "[topology]") {
   CHECK_FALSE(t.whole.manifold());
 }
 
-TEST_CASE("topology: one face turned over is orientable, and not oriented", "[topology]") {
+TEST_CASE("topology: one flipped face is orientable, and not oriented", "[topology]") {
   IndexedFaceSet mesh = test::icosphere(1);
   std::swap(mesh.corners[0], mesh.corners[1]);
   const SurfaceTopology t = topology_of(mesh);

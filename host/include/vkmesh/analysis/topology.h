@@ -33,7 +33,7 @@ struct Topology {
   [[nodiscard]] bool closed() const { return faces > 0 && boundary_edges == 0; }
   /// The faces of every edge of two faces run along it in opposite directions.
   [[nodiscard]] bool oriented() const { return misoriented_edges == 0; }
-  /// Faces could be turned over so that `oriented` holds.
+  /// Faces can be flipped so that `oriented` holds.
   bool orientable = true;
   /// χ = v − e + f.
   [[nodiscard]] std::int64_t euler_characteristic() const {

@@ -23,7 +23,7 @@ struct ConsolidateOptions {
   bool strict = false;
   /// Points that no face uses stay (default), or go.
   bool keep_isolated_points = true;
-  /// A surface like the Möbius strip, which no turning of faces makes compatible, is cut open along a seam
+  /// A surface like the Möbius strip, which no flipping of faces makes compatible, is cut open along edges
   /// (default), or refused.
   bool cut_non_orientable = true;
 };
@@ -58,7 +58,7 @@ struct ConsolidateReport {
   std::size_t added_points = 0;     ///< Those copies.
   std::size_t flipped_faces = 0;
   std::size_t cut_components = 0;  ///< Non-orientable ones.
-  std::size_t cut_edges = 0;       ///< The edges of the seams along which they were cut.
+  std::size_t cut_edges = 0;       ///< The edges along which they were cut.
 
   /// The input is an oriented manifold: half-edges can hold it as it is.
   [[nodiscard]] bool manifold() const {
@@ -87,13 +87,13 @@ struct Consolidated {
 ///    triangles (see `triangulate`); faces without three distinct points are removed, and faces that have
 ///    the points of an earlier one in the same order. The reverse of an earlier face is removed unless each
 ///    of its edges has as many faces one way as the other, as the wall between two solids has;
-/// 3. faces that share an edge of two faces are turned to agree, as the larger part of each such sheet lies;
+/// 3. faces that share an edge of two faces are flipped to agree, as the larger part of each such sheet lies;
 ///    where a sheet is not orientable it is cut along the edges that still disagree;
 /// 4. edges of three or more faces are parted: where as many faces run one way as the other, into the pairs
 ///    between which the thinnest wedges of solid lie, as where two solids touch along an edge; else into the
 ///    flattest pairs of opposite direction, the rest becoming boundary;
 /// 5. a point whose faces form several fans is given a copy at the same place for each but the first;
-/// 6. closed components that had to be turned to agree are turned outward (their volume is positive).
+/// 6. closed components that had to be flipped to agree are made to face outward (their volume is positive).
 /// No position changes but by welding. A mesh that is an oriented manifold already passes unchanged, in
 /// O(n): edges are distributed to their smaller points by counting, and sorted within one point. Repairs
 /// take O(n log n). Errors: kUnsuitable with every defect counted when `strict` (or for a non-orientable
