@@ -110,7 +110,7 @@ class Repair {
       if (uses.size() == 2) {
         join(static_cast<std::uint32_t>(uses[0]), static_cast<std::uint32_t>(uses[1]));
       } else if (uses.size() > 2) {
-        std::vector<std::uint32_t>& edge = crowded_.emplace_back();
+        std::vector<std::uint32_t>& edge = non_manifold_edges_.emplace_back();
         for (const std::uint64_t use : uses) edge.push_back(static_cast<std::uint32_t>(use));
       }
     });
@@ -144,7 +144,7 @@ class Repair {
               return fail(ErrorCode::kUnsuitable, "the component of face " +
                                                       std::to_string(source_face_[seed]) +
                                                       " is not orientable, and is not to be cut");
-            part(h);
+            unpair(h);
             ++report_.cut_edges;
             cut = true;
           }
@@ -157,10 +157,10 @@ class Repair {
     return {};
   }
 
-  /// Chooses who stays together at edges of three or more faces.
-  void part_crowded_edges() {
-    report_.split_edges = crowded_.size();
-    for (const std::vector<std::uint32_t>& edge : crowded_) pair_up(edge);
+  /// Chooses which faces stay joined at edges of three or more.
+  void pair_faces_at_non_manifold_edges() {
+    report_.split_edges = non_manifold_edges_.size();
+    for (const std::vector<std::uint32_t>& edge : non_manifold_edges_) pair_up(edge);
   }
 
   void flip_faces() {
@@ -192,7 +192,7 @@ class Repair {
         if (uses.size() <= 2) return;
         for (const std::uint64_t use : uses)
           if (mate_[static_cast<std::uint32_t>(use)] != kInvalid) {
-            part(static_cast<std::uint32_t>(use));
+            unpair(static_cast<std::uint32_t>(use));
             again = true;
           }
       });
@@ -293,7 +293,7 @@ class Repair {
     mate_[h] = g;
     mate_[g] = h;
   }
-  void part(std::uint32_t h) {
+  void unpair(std::uint32_t h) {
     mate_[mate_[h]] = kInvalid;
     mate_[h] = kInvalid;
   }
@@ -318,7 +318,7 @@ class Repair {
     return glm::cross(normal, DVec3(mesh_.points[mesh_.corners[next(h)]]) - from);
   }
 
-  struct Leaf {
+  struct FaceAtEdge {
     std::uint32_t half_edge;
     double angle;  ///< Around the edge, from its smaller to its larger point, counter-clockwise.
   };
@@ -335,7 +335,7 @@ class Repair {
     const double scale = std::sqrt(glm::dot(axis, axis));
     const DVec3 y = scale > 0 ? glm::cross(axis, x) / scale : DVec3(0.0);
 
-    std::vector<Leaf> up, down;
+    std::vector<FaceAtEdge> up, down;
     for (const std::uint32_t h : edge) {
       const DVec3 d = into_face(h);
       const bool ascending = (mesh_.corners[h] == a) != (flipped_[face_of_[h]] != 0);
@@ -344,7 +344,7 @@ class Repair {
     const bool balanced = up.size() == down.size();
     // The outward normal of an ascending face points to larger angles, that of a descending one to smaller:
     // the solid between them begins at the descending one.
-    const auto cost = [&](const Leaf& ascending, const Leaf& descending) {
+    const auto cost = [&](const FaceAtEdge& ascending, const FaceAtEdge& descending) {
       double wedge = ascending.angle - descending.angle;
       if (wedge <= 0) wedge += 2 * std::numbers::pi;
       return balanced ? wedge : std::abs(wedge - std::numbers::pi);
@@ -395,7 +395,7 @@ class Repair {
   std::vector<std::uint32_t> source_point_, source_corner_, source_face_;
   std::vector<std::uint32_t> face_of_;  ///< Of each corner.
   std::vector<std::uint32_t> mate_;     ///< Of each half-edge, the one across its edge, or kInvalid.
-  std::vector<std::vector<std::uint32_t>> crowded_;  ///< The half-edges of edges of three or more faces.
+  std::vector<std::vector<std::uint32_t>> non_manifold_edges_;  ///< The half-edges of edges of three or more faces.
   std::vector<std::uint8_t> flipped_;
   Matching matching_;
   EarClipper clipper_;
@@ -421,7 +421,7 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   steps.join_edges();
   VKMESH_CHECK(steps.orient(cut_non_orientable));
   VKMESH_CHECK(tick(0.6));
-  steps.part_crowded_edges();
+  steps.pair_faces_at_non_manifold_edges();
   steps.flip_faces();
   steps.split_points();
   VKMESH_CHECK(tick(0.9));
