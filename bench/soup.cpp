@@ -30,7 +30,7 @@ void add_soup(Programme& programme, const Input& input) {
   for (const std::uint32_t c : input.mesh.corners) soup->corners.push_back(input.mesh.points[c]);
 
   programme.contestants.push_back(
-      {step::kSoup, "vkmesh, CPU: weld, mend, half-edges", [soup]() -> Result<double> {
+      {step::kSoup, "vkmesh, CPU: weld, repair, half-edges", [soup]() -> Result<double> {
          const Stopwatch watch;
          VKMESH_TRY(IndexedFaceSet mesh, weld(*soup));
          VKMESH_TRY(const Consolidated made, consolidate(std::move(mesh)));

@@ -92,7 +92,7 @@ void add_compare(CLI::App& app, Program& program) {
       "root mean\nsquare weigh both directions alike. The Hausdorff distance is the largest there is, not of "
       "the "
       "samples alone: it lies\nbetween the bounds. Polygons are cut into triangles; nothing else is "
-      "mended.\n\n"
+      "repaired.\n\n"
       "Example:\n  vkmesh compare data/dragon/dragon_vrip_res2.ply.gz data/dragon/dragon_vrip_res3.ply.gz");
   add_common_options(*command, program.options, true, false);
   const auto options = std::make_shared<CompareOptions>();

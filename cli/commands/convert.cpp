@@ -77,7 +77,8 @@ void add_convert(CLI::App& app, Program& program) {
   command->footer(
       "The extension of OUT names its format. Attributes that the format cannot hold are left out, and "
       "named.\n"
-      "What is no oriented manifold is mended, and what was done is told: degenerate and duplicate faces go, "
+      "What is no oriented manifold is repaired, and what was done is told: degenerate and duplicate faces "
+      "go, "
       "faces are turned\nto agree, edges of three or more faces and points where separate fans meet are "
       "split. "
       "No position changes but by --weld.\n\n"
@@ -87,7 +88,7 @@ void add_convert(CLI::App& app, Program& program) {
   const auto options = std::make_shared<ConvertOptions>();
   command->add_flag("--triangulate", options->triangulate,
                     "Cut polygons into triangles (STL and glTF hold only these)");
-  command->add_flag("--as-is", options->as_is, "Judge and mend nothing: defects pass through");
+  command->add_flag("--as-is", options->as_is, "Judge and repair nothing: defects pass through");
   command->add_flag("--ascii", options->ascii,
                     "Write text where the format has a binary form as well (PLY, STL)");
   command->callback([&program, options] {

@@ -87,7 +87,7 @@ Json to_json(const ConsolidateReport& report) {
           {"weld_seams", report.weld_seams},
           {"removed_degenerate_faces", report.removed_degenerate_faces},
           {"removed_duplicate_faces", report.removed_duplicate_faces},
-          {"mended_polygons", report.mended_polygons},
+          {"repaired_polygons", report.repaired_polygons},
           {"removed_points", report.removed_points},
           {"split_edges", report.split_edges},
           {"split_points", report.split_points},
@@ -240,7 +240,7 @@ Result<HalfEdgeMesh> Job::consolidate(IndexedFaceSet& mesh) {
       return tl::unexpected<Error>(std::move(result.error()));
     }
     json_["report"] = to_json(result->report);
-    for (std::string& sentence : result->report.repairs()) row("mended", std::move(sentence));
+    for (std::string& sentence : result->report.repairs()) row("repaired", std::move(sentence));
     mesh = std::move(result->face_set);
     return std::move(result->mesh);
   });
@@ -378,7 +378,7 @@ void add_consolidate_options(CLI::App& command, CommonOptions& options) {
           "share of the bounding box's diagonal like 0.01%; 0 joins equal coordinates only")
       ->type_name("T");
   command.add_flag("--strict", consolidation.strict,
-                   "Refuse a mesh that is no oriented manifold (exit code 4), instead of mending it");
+                   "Refuse a mesh that is no oriented manifold (exit code 4), instead of repairing it");
   command.add_flag_callback(
       "--drop-isolated", [&consolidation] { consolidation.keep_isolated_points = false; },
       "Leave out points that no face uses");

@@ -96,12 +96,12 @@ TEST_CASE("Attributes are carried, and what a format cannot hold is named") {
   CHECK_THAT(stl.json().at("notes").dump(), Contains("heat"));
 }
 
-TEST_CASE("convert mends what is no manifold, and tells; --strict refuses; --as-is passes it through") {
+TEST_CASE("convert repairs what is no manifold, and tells; --strict refuses; --as-is passes it through") {
   const Scratch scratch;
   const std::string in = scratch.file("fin.off", kFinOff);
-  const Outcome mended = vkmesh_run({"convert", in, scratch.path("a.ply"), "--json"});
-  REQUIRE(mended.code == 0);
-  const auto report = mended.json().at("report");
+  const Outcome repaired = vkmesh_run({"convert", in, scratch.path("a.ply"), "--json"});
+  REQUIRE(repaired.code == 0);
+  const auto report = repaired.json().at("report");
   CHECK(report.at("non_manifold_edges") == 1);
   CHECK(report.at("split_edges") == 1);
   CHECK(report.at("added_points") == 2);

@@ -1,5 +1,5 @@
-// Fuzzes consolidate(), diagnose() and validate(): the judgement is that of a slow count, and what is taken is
-// a valid mesh that repeats the faces given.
+// Fuzzes consolidate(), diagnose() and validate(): the judgement is that of a slow count, and what is taken
+// is a valid mesh that repeats the faces given.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -159,12 +159,13 @@ void fuzz(std::span<const std::uint8_t> bytes) {
   for (const bool keep_isolated : {true, false}) {
     options = {};
     options.keep_isolated_points = keep_isolated;
-    const auto mended = consolidate(mesh, options);
-    require(mended.has_value(), "any face set is mended: " + (mended ? "" : mended.error().describe()));
-    require_sound(*mended, mesh, slow);
-    const auto again = consolidate(mended->face_set, options);
-    require(again.has_value(), "what is mended is taken");
-    require_unchanged(*again, mended->face_set);
+    const auto repaired = consolidate(mesh, options);
+    require(repaired.has_value(),
+            "any face set is repaired: " + (repaired ? "" : repaired.error().describe()));
+    require_sound(*repaired, mesh, slow);
+    const auto again = consolidate(repaired->face_set, options);
+    require(again.has_value(), "what is repaired is taken");
+    require_unchanged(*again, repaired->face_set);
   }
 }
 

@@ -165,7 +165,7 @@ compiled() {
     # shellcheck disable=SC2086
     while read -r file points faces; do
       [ -n "$file" ] || continue
-      # STL has no shared points; Coin tells points apart by their places, and the mended scan has copies of some.
+      # STL has no shared points; Coin tells points apart by their places, and the repaired scan has copies of some.
       case "$kind $file" in stl* | scene*dragon*) points=- ;; esac
       # OpenMesh drops faces where joining equal corners gives no manifold, as on the dragon.
       case "$name $file" in openmesh*dragon*.stl) continue ;; esac

@@ -246,7 +246,8 @@ TEST_CASE("a framing sees every point, and none could stand nearer") {
 TEST_CASE("azimuth and elevation turn the camera as documented") {
   const std::vector<Vec3> points = {{-1, -1, -1}, {1, 1, 1}};
   const auto axes = [&](double azimuth, double elevation, UpAxis up) {
-    return value(axes_of(value(frame_camera(points, 1, {.azimuth = azimuth, .elevation = elevation, .up = up}))));
+    return value(
+        axes_of(value(frame_camera(points, 1, {.azimuth = azimuth, .elevation = elevation, .up = up}))));
   };
   const auto near = [](const DVec3& a, const DVec3& b) {
     return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) < 1e-9;

@@ -155,7 +155,7 @@ CollapseCostOptions unit_frame(std::span<const Vec3> positions) {
 }
 
 Result<std::vector<VertexQuadric>> vertex_quadrics(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                            const CollapseCostOptions& options) {
+                                                   const CollapseCostOptions& options) {
   return detail::catching([&]() -> Result<std::vector<VertexQuadric>> {
     VKMESH_CHECK(check(mesh, positions, options));
     const auto corners = mesh.origins(), twins = mesh.twins();

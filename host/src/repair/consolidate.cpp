@@ -185,7 +185,7 @@ std::vector<std::string> ConsolidateReport::repairs() const {
                         "' moved from points to corners, for points that were welded differ");
   say(removed_degenerate_faces, "face", "faces", "without three distinct points removed");
   say(removed_duplicate_faces, "face", "faces", "with the points of another removed");
-  say(mended_polygons, "polygon", "polygons", "that repeated a point mended");
+  say(repaired_polygons, "polygon", "polygons", "that repeated a point repaired");
   say(flipped_faces, "face", "faces", "flipped to agree in orientation");
   say(cut_components, "component", "components",
       std::string("not orientable, cut along ") + std::to_string(cut_edges) +

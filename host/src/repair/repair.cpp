@@ -52,7 +52,7 @@ class Repair {
       if (source_face_.size() == taken)
         ++report_.removed_degenerate_faces;
       else if (corners.size() < face.size() || source_face_.size() > taken + 1)
-        ++report_.mended_polygons;
+        ++report_.repaired_polygons;
     }
   }
 
@@ -395,7 +395,8 @@ class Repair {
   std::vector<std::uint32_t> source_point_, source_corner_, source_face_;
   std::vector<std::uint32_t> face_of_;  ///< Of each corner.
   std::vector<std::uint32_t> mate_;     ///< Of each half-edge, the one across its edge, or kInvalid.
-  std::vector<std::vector<std::uint32_t>> non_manifold_edges_;  ///< The half-edges of edges of three or more faces.
+  std::vector<std::vector<std::uint32_t>>
+      non_manifold_edges_;  ///< The half-edges of edges of three or more faces.
   std::vector<std::uint8_t> flipped_;
   Matching matching_;
   EarClipper clipper_;
@@ -413,7 +414,7 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   Repair steps(mesh, report);
   steps.take_faces();
   VKMESH_CHECK(tick(0.2));
-  // Most meshes that need mending at all have a few degenerate faces, and that is all.
+  // Most meshes that need repairing at all have a few degenerate faces, and that is all.
   VKMESH_TRY(bool done, steps.done());
   if (done) return steps.finish();
   steps.remove_duplicates();
@@ -426,7 +427,7 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   steps.split_points();
   VKMESH_CHECK(tick(0.9));
   VKMESH_TRY(done, steps.done());
-  if (!done) return fail(ErrorCode::kInternal, "mending left a mesh that is no oriented manifold");
+  if (!done) return fail(ErrorCode::kInternal, "repairs left a mesh that is no oriented manifold");
   return steps.finish();
 }
 

@@ -41,7 +41,8 @@ Result<CameraAxes> axes_of(const Camera& camera) {
   return CameraAxes{right / size, cross(right / size, forward), forward};
 }
 
-Result<Camera> frame_camera(std::span<const Vec3> points, double width_to_height, const FramingOptions& options) {
+Result<Camera> frame_camera(std::span<const Vec3> points, double width_to_height,
+                            const FramingOptions& options) {
   if (!(options.field_of_view > 0.0) || !(options.field_of_view < 170.0))
     return fail(ErrorCode::kUsage, "a field of view lies between 0 and 170 degrees");
   if (!(options.elevation >= -90.0) || !(options.elevation <= 90.0) || !std::isfinite(options.azimuth))

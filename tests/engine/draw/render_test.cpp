@@ -244,8 +244,8 @@ TEST_CASE("the normal colours of a cube are its six", "[draw]") {
       CHECK(largest_difference(picture.at(64, 64), expected) <= 1);
     }
   // From a corner three faces are seen, each of one colour.
-  const Camera corner = value(
-      frame_camera(box.points, 1.0, {.azimuth = 40, .elevation = 30, .projection = Projection::kOrthographic}));
+  const Camera corner = value(frame_camera(
+      box.points, 1.0, {.azimuth = 40, .elevation = 30, .projection = Projection::kOrthographic}));
   const Picture picture = draw(box, style, corner);
   std::map<std::tuple<int, int, int>, int> colors;
   for (const Color& c : picture.pixels()) ++colors[{c.r, c.g, c.b}];

@@ -1,4 +1,4 @@
-// consolidate() where it has something to mend.
+// consolidate() where it has something to repair.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -22,7 +22,7 @@ using namespace vkmesh;
 namespace {
 
 /// consolidate(), with what must hold of every result.
-Consolidated mended(const IndexedFaceSet& mesh, const ConsolidateOptions& options = {}) {
+Consolidated repaired(const IndexedFaceSet& mesh, const ConsolidateOptions& options = {}) {
   auto result = consolidate(mesh, options);
   if (!result) FAIL(result.error().describe());
   const auto valid = validate(result->mesh);
@@ -42,7 +42,7 @@ Consolidated mended(const IndexedFaceSet& mesh, const ConsolidateOptions& option
     moved += set.points[p] != mesh.points[result->source_point.empty() ? p : result->source_point[p]];
   CHECK(moved == 0);
   const ConsolidateReport& report = result->report;
-  if (report.mended_polygons == 0)
+  if (report.repaired_polygons == 0)
     CHECK(set.face_count() ==
           mesh.face_count() - report.removed_degenerate_faces - report.removed_duplicate_faces);
   CHECK(set.points.size() ==
@@ -79,7 +79,7 @@ void add_face(IndexedFaceSet& mesh, std::initializer_list<std::uint32_t> face) {
 
 TEST_CASE("a manifold passes unchanged", "[repair]") {
   for (const IndexedFaceSet& mesh : {test::torus(6, 5), test::quad_cube(), test::grid(3, 2)}) {
-    const Consolidated result = mended(mesh);
+    const Consolidated result = repaired(mesh);
     CHECK(result.face_set.corners == mesh.corners);
     CHECK(result.source_point.empty());
     CHECK(result.source_face.empty());
@@ -90,7 +90,7 @@ TEST_CASE("a manifold passes unchanged", "[repair]") {
 TEST_CASE("degenerate faces go, and are counted", "[repair]") {
   IndexedFaceSet mesh = test::tetrahedron();
   mesh.corners.insert(mesh.corners.end(), {1, 1, 2, 3, 0, 3});
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(result.report.removed_degenerate_faces == 2);
   CHECK(result.face_set.face_count() == 4);
   CHECK(result.source_face == std::vector<std::uint32_t>{0, 1, 2, 3});
@@ -101,7 +101,7 @@ TEST_CASE("duplicate faces go: turned about, and reversed where that opens nothi
   IndexedFaceSet mesh = test::tetrahedron();
   mesh.corners.insert(mesh.corners.end(), {1, 2, 0});  // Face 0 again.
   mesh.corners.insert(mesh.corners.end(), {2, 1, 0});  // Its reverse.
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(result.report.removed_duplicate_faces == 2);
   CHECK(result.face_set.corners == test::tetrahedron().corners);
 }
@@ -112,28 +112,28 @@ TEST_CASE("a sheet and its reverse stay both: nothing says which side is wanted"
   for (std::size_t f = 0; f < faces; ++f)
     mesh.corners.insert(mesh.corners.end(),
                         {mesh.corners[3 * f], mesh.corners[3 * f + 2], mesh.corners[3 * f + 1]});
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(result.report.removed_duplicate_faces == 0);
   CHECK(result.face_set.face_count() == 2 * faces);
   CHECK(topology_of(result.face_set).closed());
 }
 
-TEST_CASE("polygons that repeat a point are mended", "[repair]") {
+TEST_CASE("polygons that repeat a point are repaired", "[repair]") {
   SECTION("in a row: the repetition is left out") {
     IndexedFaceSet mesh;
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     add_face(mesh, {0, 1, 1, 2, 3, 0});
-    const Consolidated result = mended(mesh);
+    const Consolidated result = repaired(mesh);
     CHECK(result.face_set.corners == std::vector<std::uint32_t>{0, 1, 2, 3});
-    CHECK(result.report.mended_polygons == 1);
+    CHECK(result.report.repaired_polygons == 1);
   }
   SECTION("a hole joined to the around by a bridge stays a hole") {
     // A square of side 4 with a square hole of side 2, cut along an edge between them.
     IndexedFaceSet mesh;
     mesh.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}};
     add_face(mesh, {0, 1, 2, 3, 0, 4, 5, 6, 7, 4});
-    const Consolidated result = mended(mesh);
-    CHECK(result.report.mended_polygons == 1);
+    const Consolidated result = repaired(mesh);
+    CHECK(result.report.repaired_polygons == 1);
     double area = 0;
     for (std::size_t f = 0; f < result.face_set.face_count(); ++f) {
       const auto c = result.face_set.face(f);
@@ -151,7 +151,7 @@ TEST_CASE("polygons that repeat a point are mended", "[repair]") {
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     add_face(mesh, {0, 1, 0, 1});
     add_face(mesh, {0, 1, 2});
-    CHECK(mended(mesh).face_set.corners == std::vector<std::uint32_t>{0, 1, 2});
+    CHECK(repaired(mesh).face_set.corners == std::vector<std::uint32_t>{0, 1, 2});
   }
 }
 
@@ -160,10 +160,10 @@ TEST_CASE("isolated points stay, or go", "[repair]") {
   mesh.points.insert(mesh.points.begin(), Vec3(9.0f));
   for (std::uint32_t& c : mesh.corners) ++c;
   mesh.point_channels = {{"id", 1, std::vector<std::int32_t>{7, 0, 1, 2, 3}}};
-  CHECK(mended(mesh).face_set.points.size() == 5);
+  CHECK(repaired(mesh).face_set.points.size() == 5);
   ConsolidateOptions options;
   options.keep_isolated_points = false;
-  const Consolidated result = mended(mesh, options);
+  const Consolidated result = repaired(mesh, options);
   CHECK(result.report.removed_points == 1);
   CHECK(result.source_point == std::vector<std::uint32_t>{1, 2, 3, 4});
   CHECK(result.face_set.corners == test::tetrahedron().corners);
@@ -175,7 +175,7 @@ TEST_CASE("a point where fans meet is split, attributes with it", "[repair]") {
   std::vector<float> heat;
   for (std::size_t p = 0; p < mesh.points.size(); ++p) heat.push_back(static_cast<float>(p));
   mesh.point_channels = {{"heat", 1, heat}};
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(result.report.split_points == 1);
   CHECK(result.report.added_points == 1);
   CHECK(result.report.non_manifold_vertices == 1);
@@ -183,7 +183,7 @@ TEST_CASE("a point where fans meet is split, attributes with it", "[repair]") {
   CHECK(std::get<std::vector<float>>(result.face_set.point_channels[0].values).back() == 0.0f);
   CHECK(surface_topology(result.face_set)->components.size() == 2);
 
-  const Consolidated tori = mended(test::tori_sharing_a_point());
+  const Consolidated tori = repaired(test::tori_sharing_a_point());
   CHECK(tori.report.added_points == 1);
   CHECK(topology_of(tori.face_set).genus == 2);
 }
@@ -193,7 +193,7 @@ TEST_CASE("three faces on an edge: the flattest two stay together", "[repair]") 
   for (const float side : {1.0f, -1.0f}) {
     IndexedFaceSet mesh = test::fin();
     mesh.points[4].z *= side;
-    const Consolidated result = mended(mesh);
+    const Consolidated result = repaired(mesh);
     CHECK(result.report.split_edges == 1);
     CHECK(result.report.non_manifold_edges == 1);
     const SurfaceTopology t = surface_topology(result.face_set).value();
@@ -217,7 +217,7 @@ TEST_CASE("four faces on an edge: those stay together between which solid lies",
       else
         mesh.corners.insert(mesh.corners.end(), {1, 0, 2 + i});
     }
-    const std::vector<std::uint32_t> of = surface_topology(mended(mesh).face_set)->component_of_face;
+    const std::vector<std::uint32_t> of = surface_topology(repaired(mesh).face_set)->component_of_face;
     CHECK(of == (other ? std::vector<std::uint32_t>{0, 1, 1, 0} : std::vector<std::uint32_t>{0, 0, 1, 1}));
   }
 }
@@ -233,7 +233,7 @@ TEST_CASE("two cubes that touch along an edge become two closed cubes", "[repair
     REQUIRE(surface_topology(weld(mesh)->mesh)->whole.non_manifold_edges == 1);
     ConsolidateOptions options;
     options.weld = WeldOptions{};
-    const Consolidated result = mended(mesh, options);
+    const Consolidated result = repaired(mesh, options);
     CHECK(result.report.welded_points == 2);
     const SurfaceTopology t = surface_topology(result.face_set).value();
     REQUIRE(t.components.size() == 2);
@@ -256,7 +256,7 @@ TEST_CASE("two cubes that share a wall stay two closed cubes", "[repair]") {
   }
   pair = weld(pair)->mesh;
   REQUIRE(pair.points.size() == 12);
-  const Consolidated result = mended(pair);
+  const Consolidated result = repaired(pair);
   CHECK(result.report.removed_duplicate_faces == 0);
   const SurfaceTopology t = surface_topology(result.face_set).value();
   CHECK(t.components.size() == 2);
@@ -277,7 +277,7 @@ TEST_CASE("faces are turned to agree, and closed components outward", "[repair]"
   }
   REQUIRE(2 * turned > mesh.face_count());
   mesh.corner_channels = {{"corner", 1, std::vector<std::uint32_t>(mesh.corners)}};
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(volume_of(result.face_set) > 4.0);
   CHECK(result.report.flipped_faces == turned);
   CHECK(std::get<std::vector<std::uint32_t>>(result.face_set.corner_channels[0].values) ==
@@ -287,10 +287,10 @@ TEST_CASE("faces are turned to agree, and closed components outward", "[repair]"
 TEST_CASE("a consistent surface that faces inward is left so: it may be a room", "[repair]") {
   IndexedFaceSet mesh = test::both(test::icosphere(1), test::bow_tie(), Vec3(9.0f));
   for (std::size_t c = 0; c < 3 * 80; c += 3) std::swap(mesh.corners[c], mesh.corners[c + 1]);
-  CHECK(mended(mesh).report.flipped_faces == 0);
+  CHECK(repaired(mesh).report.flipped_faces == 0);
   // Nor does it turn because another component has to.
   std::swap(mesh.corners[3 * 80], mesh.corners[3 * 80 + 1]);
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(result.report.flipped_faces == 1);
   CHECK(std::equal(mesh.corners.begin(), mesh.corners.begin() + 3 * 80, result.face_set.corners.begin()));
 }
@@ -298,7 +298,7 @@ TEST_CASE("a consistent surface that faces inward is left so: it may be a room",
 TEST_CASE("an open sheet keeps the orientation of its larger part", "[repair]") {
   IndexedFaceSet mesh = test::grid(4, 4);
   for (const std::size_t f : {0u, 9u, 20u}) std::swap(mesh.corners[3 * f], mesh.corners[3 * f + 2]);
-  const Consolidated result = mended(mesh);
+  const Consolidated result = repaired(mesh);
   CHECK(result.report.flipped_faces == 3);
   for (std::size_t f = 0; f < result.face_set.face_count(); ++f) {
     const auto c = result.face_set.face(f);
@@ -309,7 +309,7 @@ TEST_CASE("an open sheet keeps the orientation of its larger part", "[repair]") 
 }
 
 TEST_CASE("what is not orientable is cut open along a seam, or refused", "[repair]") {
-  const Consolidated strip = mended(test::mobius(9));
+  const Consolidated strip = repaired(test::mobius(9));
   CHECK(strip.report.cut_components == 1);
   CHECK(strip.report.cut_edges == 1);
   CHECK(strip.report.added_points == 2);
@@ -318,7 +318,7 @@ TEST_CASE("what is not orientable is cut open along a seam, or refused", "[repai
   CHECK(t.boundary_loops == 1);
 
   for (const auto& [rings, sides] : {std::pair{3u, 3u}, std::pair{8u, 6u}, std::pair{5u, 12u}}) {
-    const Consolidated bottle = mended(test::klein_bottle(rings, sides));
+    const Consolidated bottle = repaired(test::klein_bottle(rings, sides));
     CHECK(bottle.report.cut_components == 1);
     CHECK(bottle.report.cut_edges >= sides);
     CHECK(topology_of(bottle.face_set).orientable);
@@ -333,7 +333,7 @@ TEST_CASE("what is not orientable is cut open along a seam, or refused", "[repai
   CHECK_THAT(refused.error().message, Catch::Contains("the component of face 40 is not orientable"));
 }
 
-TEST_CASE("strict refuses what would be mended", "[repair]") {
+TEST_CASE("strict refuses what would be repaired", "[repair]") {
   ConsolidateOptions strict;
   strict.strict = true;
   CHECK(consolidate(test::torus(5, 4), strict));
@@ -361,7 +361,7 @@ TEST_CASE("welding comes first, and its seams survive", "[repair]") {
   soup.point_channels = {{"uv", 2, uv}};
   ConsolidateOptions options;
   options.weld = WeldOptions{};
-  const Consolidated result = mended(soup, options);
+  const Consolidated result = repaired(soup, options);
   CHECK(result.report.welded_points == 16);
   CHECK(result.report.weld_seams == std::vector<std::string>{"uv"});
   CHECK(topology_of(result.face_set).genus == 0);
@@ -389,9 +389,9 @@ TEST_CASE("random soups of triangles over few points become manifolds, faces all
       mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
     }
     mesh.normalize_offsets();
-    const Consolidated result = mended(mesh);
+    const Consolidated result = repaired(mesh);
     // Every face of the result has the points of its source, in its order or the reverse.
-    for (std::size_t f = 0; f < result.face_set.face_count() && result.report.mended_polygons == 0; ++f) {
+    for (std::size_t f = 0; f < result.face_set.face_count() && result.report.repaired_polygons == 0; ++f) {
       const std::size_t source = result.source_face.empty() ? f : result.source_face[f];
       std::multiset<std::uint32_t> ours, theirs(mesh.face(source).begin(), mesh.face(source).end());
       for (const std::uint32_t c : result.face_set.face(f))
@@ -413,7 +413,7 @@ TEST_CASE("every mesh of libcgal-demo consolidates into a valid manifold", "[rep
     }
     CAPTURE(path);
     const IndexedFaceSet mesh = to_indexed_face_set(std::move(*file)).value();
-    const Consolidated result = mended(mesh);
+    const Consolidated result = repaired(mesh);
     ++whole;
     repaired += result.report.manifold() ? 0u : 1u;
   }

@@ -1,4 +1,4 @@
-// From an indexed face set to half-edges: finding which faces share an edge, and mending or refusing what is
+// Makes an indexed face set an oriented manifold and builds its half-edges; repairs or refuses what is
 // no oriented manifold.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace vkmesh {
 struct ConsolidateOptions {
   /// Points within the tolerance are made one before anything is judged. Default: none are.
   std::optional<WeldOptions> weld;
-  /// Refuse a mesh that is no oriented manifold, instead of mending it. Default: mend.
+  /// Refuse a mesh that is no oriented manifold, instead of repairing it. Default: repair.
   bool strict = false;
   /// Points that no face uses stay (default), or go.
   bool keep_isolated_points = true;
@@ -42,7 +42,7 @@ struct ConsolidateReport {
   std::size_t non_manifold_edges = 0;  ///< Three or more faces.
   std::size_t misoriented_edges = 0;   ///< Two faces that run the same way along the edge.
   /// Points whose faces form more than one fan; counted here when all edges are in order, else when the
-  /// mesh is mended.
+  /// mesh is repaired.
   std::size_t non_manifold_vertices = 0;
 
   // What was done.
@@ -51,11 +51,11 @@ struct ConsolidateReport {
   std::vector<std::string> weld_seams;       ///< Point channels that became corner channels by welding.
   std::size_t removed_degenerate_faces = 0;  ///< Fewer than three distinct points in a row.
   std::size_t removed_duplicate_faces = 0;   ///< The same points as an earlier face.
-  std::size_t mended_polygons = 0;  ///< That repeated a point: the repetition left out, or cut at it.
-  std::size_t removed_points = 0;   ///< Isolated ones that were not to be kept.
-  std::size_t split_edges = 0;      ///< Of three or more faces: parted into pairs and boundary edges.
-  std::size_t split_points = 0;     ///< Points that were given copies, one for each fan of faces but one.
-  std::size_t added_points = 0;     ///< Those copies.
+  std::size_t repaired_polygons = 0;  ///< That repeated a point: the repetition left out, or cut at it.
+  std::size_t removed_points = 0;     ///< Isolated ones that were not to be kept.
+  std::size_t split_edges = 0;        ///< Of three or more faces: parted into pairs and boundary edges.
+  std::size_t split_points = 0;       ///< Points that were given copies, one for each fan of faces but one.
+  std::size_t added_points = 0;       ///< Those copies.
   std::size_t flipped_faces = 0;
   std::size_t cut_components = 0;  ///< Non-orientable ones.
   std::size_t cut_edges = 0;       ///< The edges along which they were cut.

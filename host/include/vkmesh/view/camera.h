@@ -45,7 +45,7 @@ struct FramingOptions {
 /// The camera in the given direction that just sees all points in a picture of the given width to height.
 /// Without points it looks at the unit sphere. O(points). Errors: kUsage for options outside their ranges.
 [[nodiscard]] Result<Camera> frame_camera(std::span<const Vec3> points, double width_to_height,
-                                   const FramingOptions& options = {});
+                                          const FramingOptions& options = {});
 
 /// Sets near and far of a camera so that all points before it are seen. O(points).
 [[nodiscard]] Result<void> fit_depth(Camera& camera, std::span<const Vec3> points);
