@@ -6,6 +6,7 @@
 #include <string>
 
 #include <vkmesh/analysis/topology.h>
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/mesh/triangulate.h>
 
 #include "commands.h"
@@ -188,11 +189,7 @@ Result<void> run(Job& job) {
   }
   result["bounds"] = nullptr;
   if (!mesh.points.empty()) {
-    Vec3 low = mesh.points[0], high = mesh.points[0];
-    for (const Vec3& p : mesh.points) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
+    const auto [low, high] = bounds_of(mesh.points);
     if (job.offset() == DVec3(0.0)) {
       result["bounds"] = {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}};
     } else {

@@ -14,13 +14,13 @@ struct Lanes {
 
 }  // namespace
 
-void NearFaces::append_within(const NearFaces& all, std::size_t begin, std::size_t end, Vec3 low, Vec3 high,
+void NearFaces::append_within(const NearFaces& all, std::size_t begin, std::size_t end, const Bounds& bounds,
                               float squared_radius) {
   for (std::size_t i = begin; i < end; ++i) {
     const Vec3 c = all.faces_[i].centroid;
     float squared = 0.0f;
     for (int k = 0; k < 3; ++k) {
-      const float below = low[k] - c[k], above = c[k] - high[k];
+      const float below = bounds.low[k] - c[k], above = c[k] - bounds.high[k];
       const float outside = below > 0.0f ? below : (above > 0.0f ? above : 0.0f);
       squared += outside * outside;
     }

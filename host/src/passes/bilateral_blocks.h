@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/math/vec.h>
 
 namespace vkmesh::detail {
@@ -20,7 +21,7 @@ class NearFaces {
   /// `area` in units of σ_f².
   void append(Vec3 centroid, Vec3 normal, float area) { faces_.push_back({centroid, normal, area}); }
   /// The faces [begin, end) of `all` whose centroids are within √squared_radius of the box.
-  void append_within(const NearFaces& all, std::size_t begin, std::size_t end, Vec3 low, Vec3 high,
+  void append_within(const NearFaces& all, std::size_t begin, std::size_t end, const Bounds& bounds,
                      float squared_radius);
   void set_normal(std::size_t i, Vec3 normal) { faces_[i].normal = normal; }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <vkmesh/math/arithmetic.h>
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/passes/detail/bilateral_grid.h>
 
 #include "base/parallel.h"
@@ -22,20 +23,17 @@ Result<void> require_bilateral_options(const BilateralSmoothingOptions& options)
 Result<BilateralGrid> bilateral_grid(const HalfEdgeMesh& mesh, std::span<const Vec3> p,
                                      const BilateralSmoothingOptions& options) {
   const auto corners = mesh.origins();
-  Vec3 low = p[corners[0]], high = low;
+  Bounds bounds;
   std::vector<std::uint32_t> used;
   std::vector<Vec3> used_positions;
   for (std::uint32_t v = 0; v < p.size(); ++v) {
     if (mesh.is_isolated(VertexId(v))) continue;
     used.push_back(v);
     used_positions.push_back(p[v]);
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[v][k]);
-      high[k] = std::max(high[k], p[v][k]);
-    }
+    bounds.add(p[v]);
   }
   for (int k = 0; k < 3; ++k)
-    if (!(high[k] - low[k] <= 0x1p20f * options.spatial))
+    if (!(bounds.high[k] - bounds.low[k] <= 0x1p20f * options.spatial))
       return fail(ErrorCode::kUnsuitable,
                   "the mesh is more than 2^20 times as wide as the spatial width of the smoothing");
 
@@ -48,11 +46,10 @@ Result<BilateralGrid> bilateral_grid(const HalfEdgeMesh& mesh, std::span<const V
     }
   });
   // A centroid may lie below the smallest vertex by a rounding.
-  for (const Vec3& c : centroids)
-    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], c[k]);
+  for (const Vec3& c : centroids) bounds.add(c);
   const float cells_per_unit = 0.998f * reciprocal(options.spatial);
-  return BilateralGrid{PointGrid(centroids, low, cells_per_unit),
-                       PointGrid(used_positions, low, cells_per_unit), std::move(used),
+  return BilateralGrid{PointGrid(centroids, bounds.low, cells_per_unit),
+                       PointGrid(used_positions, bounds.low, cells_per_unit), std::move(used),
                        std::move(used_positions), std::move(centroids)};
 }
 

@@ -44,16 +44,12 @@ Result<void> for_each_cell(const detail::BilateralGrid& grid, std::uint64_t reac
       NearFaces near;
       for (std::size_t cell = first + from; cell < first + to; ++cell) {
         // Faces too far from all of the cell's vertices are left out.
-        Vec3 low = positions[vertices.index(vertices.cell_begin(cell))], high = low;
+        Bounds bounds;
         for (std::size_t i = vertices.cell_begin(cell); i < vertices.cell_end(cell); ++i)
-          for (int k = 0; k < 3; ++k) {
-            const float x = positions[vertices.index(i)][k];
-            low[k] = std::min(low[k], x);
-            high[k] = std::max(high[k], x);
-          }
+          bounds.add(positions[vertices.index(i)]);
         near.clear();
         grid.faces.for_each_range_near(vertices.key_of_cell(cell), reach, [&](std::size_t b, std::size_t e) {
-          near.append_within(ordered, b, e, low, high, squared_radius);
+          near.append_within(ordered, b, e, bounds, squared_radius);
         });
         for (std::size_t i = vertices.cell_begin(cell); i < vertices.cell_end(cell); i += kBilateralLanes)
           sum(near, i, std::min(i + kBilateralLanes, vertices.cell_end(cell)));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/math/unit_frame.h>
 #include <vkmesh/passes/collapse_costs.h>
 #include <vkmesh/passes/detail/raw_measures.h>
 
@@ -142,13 +143,7 @@ Result<void> detail::require_collapse_cost_options(const CollapseCostOptions& op
 CollapseCostOptions unit_frame(std::span<const Vec3> positions) {
   CollapseCostOptions options;
   if (positions.empty()) return options;
-  Vec3 low = positions[0], high = low;
-  for (const Vec3& p : positions)
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
-  const detail::MeasuresFrame frame = detail::frame_of_bounds(low, high);
+  const detail::UnitFrame frame = detail::unit_frame_of(bounds_of(positions));
   options.centre = frame.centre;
   options.scale = std::clamp(frame.scale, 0x1p-60f, 0x1p60f);
   return options;

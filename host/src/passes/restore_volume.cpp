@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/math/unit_frame.h>
 #include <vkmesh/passes/detail/raw_measures.h>
 #include <vkmesh/passes/restore_volume.h>
 
@@ -34,8 +35,8 @@ float factor_of(const RawMeasures& before, const RawMeasures& after) {
 }
 
 Scaling scaling_of(const RawMeasures& before, const RawMeasures& after) {
-  const detail::MeasuresFrame frame =
-      detail::frame_of_bounds({after[0], after[1], after[2]}, {after[3], after[4], after[5]});
+  const detail::UnitFrame frame =
+      detail::unit_frame_of({{after[0], after[1], after[2]}, {after[3], after[4], after[5]}});
   const Vec3 middle =
       zero_below(Vec3(after[7], after[8], after[9]) * reciprocal(3.0f * after[6]), VKMESH_TINY_DIRECTION);
   return {frame.centre + zero_below(middle * frame.inverse_scale, VKMESH_TINY_COORDINATE),

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/math/bounds.h>
+#include <vkmesh/math/unit_frame.h>
 #include <vkmesh/passes/detail/raw_measures.h>
 #include <vkmesh/passes/surface_measures.h>
 
@@ -15,10 +17,6 @@ namespace vkmesh {
 namespace {
 
 constexpr std::size_t kBlock = VKMESH_SUM_BLOCK;
-
-struct Bounds {
-  Vec3 low{0.0f}, high{0.0f};
-};
 
 struct Sums {
   float twice_area = 0.0f;
@@ -37,30 +35,13 @@ std::vector<T> by_blocks(std::size_t count, Reduce&& reduce) {
   return results;
 }
 
-// Joins the bounds that bounds(i) tells, of [begin, end).
-template <class Of>
-Bounds joined(std::size_t begin, std::size_t end, Of&& bounds) {
-  Bounds all = bounds(begin);
-  for (std::size_t i = begin + 1; i < end; ++i) {
-    const Bounds more = bounds(i);
-    for (int k = 0; k < 3; ++k) {
-      if (more.low[k] < all.low[k]) all.low[k] = more.low[k];
-      if (more.high[k] > all.high[k]) all.high[k] = more.high[k];
-    }
-  }
+Bounds bounds_by_blocks(std::span<const Vec3> p) {
+  if (p.empty()) return {Vec3(0.0f), Vec3(0.0f)};
+  const std::vector<Bounds> blocks = by_blocks<Bounds>(
+      p.size(), [&](std::size_t begin, std::size_t end) { return bounds_of(p.subspan(begin, end - begin)); });
+  Bounds all;
+  for (const Bounds& block : blocks) all += block;
   return all;
-}
-
-Bounds bounds_of(std::span<const Vec3> p) {
-  if (p.empty()) return {};
-  std::vector<Bounds> level = by_blocks<Bounds>(p.size(), [&](std::size_t begin, std::size_t end) {
-    return joined(begin, end, [&](std::size_t i) { return Bounds{p[i], p[i]}; });
-  });
-  while (level.size() > 1)
-    level = by_blocks<Bounds>(level.size(), [&](std::size_t begin, std::size_t end) {
-      return joined(begin, end, [&](std::size_t i) { return level[i]; });
-    });
-  return level[0];
 }
 
 Sums measures_of(Vec3 a, Vec3 b, Vec3 c) {
@@ -101,20 +82,11 @@ VKMESH_FLAT_CLONES void measure(Triangles& of) {
 
 }  // namespace
 
-detail::MeasuresFrame detail::frame_of_bounds(Vec3 low, Vec3 high) {
-  // A power of two brings the largest extent into [1, 2).
-  const Vec3 extent = high - low;
-  const std::uint32_t largest =
-      std::max(std::max(bits(extent.x), bits(extent.y)), bits(extent.z)) & 0x7f800000u;
-  return {low + zero_below(0.5f * extent, VKMESH_TINY_COORDINATE), from_bits(0x7f000000u - largest),
-          from_bits(largest)};
-}
-
 SurfaceMeasures to_surface_measures(const RawMeasures& raw) {
   SurfaceMeasures result;
   result.low = Vec3(raw[0], raw[1], raw[2]);
   result.high = Vec3(raw[3], raw[4], raw[5]);
-  const detail::MeasuresFrame frame = detail::frame_of_bounds(result.low, result.high);
+  const detail::UnitFrame frame = detail::unit_frame_of({result.low, result.high});
   const double unit = frame.inverse_scale, twice_area = raw[6];
   result.area = 0.5 * twice_area * unit * unit;
   result.volume = double{raw[10]} / 6.0 * unit * unit * unit;
@@ -124,8 +96,8 @@ SurfaceMeasures to_surface_measures(const RawMeasures& raw) {
 }
 
 RawMeasures detail::raw_measures(std::span<const std::uint32_t> corners, std::span<const Vec3> p) {
-  const Bounds bounds = bounds_of(p);
-  const MeasuresFrame frame = frame_of_bounds(bounds.low, bounds.high);
+  const Bounds bounds = bounds_by_blocks(p);
+  const UnitFrame frame = unit_frame_of(bounds);
   const auto scaled = [&](std::size_t h) {
     return zero_below((p[corners[h]] - frame.centre) * frame.scale, VKMESH_TINY_DIRECTION);
   };

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/math/vec.h>
 
 #include "base/parallel.h"
@@ -26,37 +26,28 @@ struct Frame {
 /// kUnsuitable.
 template <class Point, class IsUsed>
 Result<Frame> frame_of(std::span<const Point> points, IsUsed&& is_used) {
-  struct Box {
-    DVec3 low{std::numeric_limits<double>::infinity()}, high = -low;
+  struct Seen {
+    DBounds bounds;
     bool finite = true;
-    Box& operator+=(const Box& b) {
-      for (int k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], b.low[k]);
-        high[k] = std::max(high[k], b.high[k]);
-      }
-      finite &= b.finite;
+    Seen& operator+=(const Seen& other) {
+      bounds += other.bounds;
+      finite &= other.finite;
       return *this;
     }
   };
-  const auto box = parallel_sum<Box>(points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    Box part;
+  const auto seen = parallel_sum<Seen>(points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    Seen part;
     for (std::size_t v = begin; v < end; ++v) {
       const Point& p = points[v];
       part.finite &= std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      if (!is_used(v)) continue;
-      for (int k = 0; k < 3; ++k) {
-        const double x = p[k];
-        part.low[k] = std::min(part.low[k], x);
-        part.high[k] = std::max(part.high[k], x);
-      }
+      if (is_used(v)) part.bounds.add(DVec3(p));
     }
     return part;
   });
-  if (!box.finite) return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
-  const DVec3 &low = box.low, &high = box.high;
+  if (!seen.finite) return fail(ErrorCode::kUnsuitable, "decimation needs finite positions");
   Frame frame;
-  if (low.x > high.x) return frame;  // nothing is used
-  const DVec3 size = high - low;
+  if (seen.bounds.empty()) return frame;  // nothing is used
+  const DVec3 &low = seen.bounds.low, size = seen.bounds.extent();
   const double largest = std::max({size.x, size.y, size.z});
   if (!std::isfinite(largest))
     return fail(ErrorCode::kUnsuitable, "decimation needs a mesh of finite extent");
