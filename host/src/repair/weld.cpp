@@ -12,12 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include <glm/common.hpp>
-#include <tbb/parallel_sort.h>
-
 #include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/mesh/handles.h>
 #include <vkmesh/repair/weld.h>
+#include <vkmesh/spatial/point_grid.h>
 
 #include "base/disjoint_sets.h"
 #include "base/distinct_rows.h"
@@ -30,42 +29,15 @@ bool before(const Vec3& a, const Vec3& b) {
 }
 
 /// Unites the points that are at most `tolerance` apart.
-class Grid {
+class NearPoints {
  public:
-  Grid(std::span<const Vec3> points, double tolerance, detail::DisjointSets& sets)
-      : points_(points), tolerance_(tolerance), sets_(sets) {
-    DVec3 low(points[0]), high = low;
-    for (const Vec3& p : points)
-      for (int i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], static_cast<double>(p[i]));
-        high[i] = std::max(high[i], static_cast<double>(p[i]));
-      }
-    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    // Points of one cell are within the tolerance of each other, unless the tolerance is so small that such
-    // cells could not be numbered.
-    const double wanted = tolerance * std::numbers::inv_sqrt3 * (1 - 1e-12);
-    const double side = std::max(wanted, std::ldexp(extent, -31));
-    uniform_ = side == wanted;
-    items_.resize(points.size());
-    for (std::uint32_t p = 0; p < points.size(); ++p) {
-      items_[p].point = p;
-      for (int i = 0; i < 3; ++i)
-        items_[p].cell[static_cast<std::size_t>(i)] =
-            static_cast<std::uint32_t>((static_cast<double>(points[p][i]) - low[i]) / side) + kReach;
-    }
-    tbb::parallel_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
-      return std::tie(a.cell, a.point) < std::tie(b.cell, b.point);
-    });
-    for (std::uint32_t i = 0; i < items_.size(); ++i)
-      if (i == 0 || items_[i].cell != items_[i - 1].cell) starts_.push_back(i);
-    starts_.push_back(static_cast<std::uint32_t>(items_.size()));
-  }
+  NearPoints(std::span<const Vec3> points, double tolerance, detail::DisjointSets& sets)
+      : points_(points), tolerance_(tolerance), sets_(sets), cells_(cells_of(points, tolerance)) {}
 
   void unite() {
-    for (std::size_t c = 0; c + 1 < starts_.size(); ++c) {
-      if (uniform_)
-        for (std::uint32_t i = starts_[c] + 1; i < starts_[c + 1]; ++i)
-          sets_.unite(items_[starts_[c]].point, items_[i].point);
+    for (std::size_t c = 0; c < cells_.points.cell_count(); ++c) {
+      if (cells_.within_tolerance)
+        for (std::size_t i = first(c) + 1; i < last(c); ++i) sets_.unite(point(first(c)), point(i));
       else
         compare(c, c);
     }
@@ -79,52 +51,72 @@ class Grid {
   /// Cells further apart than this along an axis are further apart than the tolerance.
   static constexpr std::uint32_t kReach = 2;
   using Cell = std::array<std::uint32_t, 3>;
-  struct Item {
-    Cell cell;
-    std::uint32_t point;
+  struct Cells {
+    detail::PointsByCell<Cell> points;
+    /// Points of one cell are within the tolerance of each other, unless the tolerance is so small that such
+    /// cells could not be numbered.
+    bool within_tolerance;
   };
+
+  static Cells cells_of(std::span<const Vec3> points, double tolerance) {
+    const Bounds bounds = bounds_of(points);
+    const DVec3 low(bounds.low), size = DVec3(bounds.high) - low;
+    const double wanted = tolerance * std::numbers::inv_sqrt3 * (1 - 1e-12);
+    const double side = std::max(wanted, std::ldexp(std::max({size.x, size.y, size.z}), -31));
+    return {{points.size(),
+             [&](std::size_t p) {
+               Cell cell;
+               for (int i = 0; i < 3; ++i)
+                 cell[static_cast<std::size_t>(i)] =
+                     static_cast<std::uint32_t>((static_cast<double>(points[p][i]) - low[i]) / side) + kReach;
+               return cell;
+             }},
+            side == wanted};
+  }
+
+  [[nodiscard]] std::size_t first(std::size_t cell) const { return cells_.points.cell_begin(cell); }
+  [[nodiscard]] std::size_t last(std::size_t cell) const { return cells_.points.cell_end(cell); }
+  [[nodiscard]] std::uint32_t point(std::size_t place) const { return cells_.points.index(place); }
 
   /// Compares each cell with those of one column of neighbours: (x + dx, y + dy - kReach, z ± kReach). The
   /// columns ascend as the cells do, so that the place in the list only moves forward.
   void sweep(std::uint32_t dx, std::uint32_t dy) {
-    const std::size_t cells = starts_.size() - 1;
+    const std::size_t cells = cells_.points.cell_count();
     std::size_t from = 0;
     for (std::size_t c = 0; c < cells; ++c) {
-      const Cell& here = items_[starts_[c]].cell;
-      const Cell first = {here[0] + dx, here[1] + dy - kReach, here[2] - kReach};
-      const Cell last = {first[0], first[1], here[2] + kReach};
-      while (from < cells && items_[starts_[from]].cell < first) ++from;
-      for (std::size_t n = from; n < cells && items_[starts_[n]].cell <= last; ++n)
+      const Cell& here = cells_.points.key_of_cell(c);
+      const Cell least = {here[0] + dx, here[1] + dy - kReach, here[2] - kReach};
+      const Cell greatest = {least[0], least[1], here[2] + kReach};
+      while (from < cells && cells_.points.key_of_cell(from) < least) ++from;
+      for (std::size_t n = from; n < cells && cells_.points.key_of_cell(n) <= greatest; ++n)
         if (n > c) compare(c, n);
     }
   }
 
   void compare(std::size_t c, std::size_t n) {
-    const auto point = [&](std::uint32_t i) { return items_[i].point; };
     // Where whole cells are one, one pair that is close unites them.
-    if (uniform_ && sets_.find(point(starts_[c])) == sets_.find(point(starts_[n]))) return;
-    for (std::uint32_t i = starts_[c]; i < starts_[c + 1]; ++i)
-      for (std::uint32_t j = n == c ? i + 1 : starts_[n]; j < starts_[n + 1]; ++j) {
+    const bool whole = cells_.within_tolerance;
+    if (whole && sets_.find(point(first(c))) == sets_.find(point(first(n)))) return;
+    for (std::size_t i = first(c); i < last(c); ++i)
+      for (std::size_t j = n == c ? i + 1 : first(n); j < last(n); ++j) {
         const DVec3 d = DVec3(points_[point(i)]) - DVec3(points_[point(j)]);
         if (d.x * d.x + d.y * d.y + d.z * d.z > tolerance_ * tolerance_) continue;
         sets_.unite(point(i), point(j));
-        if (uniform_) return;
+        if (whole) return;
       }
   }
 
   std::span<const Vec3> points_;
   double tolerance_;
   detail::DisjointSets& sets_;
-  bool uniform_ = true;
-  std::vector<Item> items_;
-  std::vector<std::uint32_t> starts_;  ///< Of the items of each cell, and their number.
+  Cells cells_;
 };
 
 /// The numbers of distinct points, each the place of its set's lowest point.
 std::vector<Vec3> move_together(const std::vector<Vec3>& distinct, double tolerance, double& largest_move) {
   std::vector<Vec3> moved = distinct;
   detail::DisjointSets sets(distinct.size());
-  Grid(distinct, tolerance, sets).unite();
+  NearPoints(distinct, tolerance, sets).unite();
   for (std::uint32_t p = 0; p < distinct.size(); ++p) {
     Vec3& lowest = moved[sets.find(p)];
     if (before(distinct[p], lowest)) lowest = distinct[p];
@@ -135,17 +127,6 @@ std::vector<Vec3> move_together(const std::vector<Vec3>& distinct, double tolera
     largest_move = std::max(largest_move, std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z));
   }
   return moved;
-}
-
-double diagonal(std::span<const Vec3> points) {
-  if (points.empty()) return 0;
-  DVec3 low(points[0]), high = low;
-  for (const Vec3& p : points) {
-    low = glm::min(low, DVec3(p));
-    high = glm::max(high, DVec3(p));
-  }
-  const DVec3 d = high - low;
-  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
 /// Whether every point has the value of the point that stands for it.
@@ -176,7 +157,7 @@ Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& option
   for (const Vec3& p : mesh.points)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorCode::kUsage, "a point has a coordinate that is not finite");
-  const double tolerance = options.tolerance.in_units(diagonal(mesh.points));
+  const double tolerance = options.tolerance.in_units(bounds_of(mesh.points).diagonal());
 
   Welded result;
   result.point_of.resize(mesh.points.size());
