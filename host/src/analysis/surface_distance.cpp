@@ -7,13 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <vkmesh/analysis/surface_distance.h>
 #include <vkmesh/base/exceptions_to_result.h>
+#include <vkmesh/math/bounds.h>
 
 #include "math/triangle_distance.h"
+#include "spatial/triangle_tree.h"
 
 namespace vkmesh {
 namespace {
@@ -21,7 +22,6 @@ namespace {
 using glm::cross;
 using glm::dot;
 
-constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kSamplesBetweenReports = 8192;
 
 using detail::Triangle, detail::squared_distance;
@@ -30,108 +30,6 @@ Triangle triangle(const TriangleSurface& surface, std::size_t f) {
   return {DVec3(surface.points[surface.corners[3 * f]]), DVec3(surface.points[surface.corners[3 * f + 1]]),
           DVec3(surface.points[surface.corners[3 * f + 2]])};
 }
-
-/// Boxes around halves of the triangles, halved again: nearest-triangle search.
-class Tree {
- public:
-  explicit Tree(const TriangleSurface& surface) {
-    const std::size_t count = surface.corners.size() / 3;
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0u);
-    std::vector<Vec3> centres(count);
-    for (std::size_t f = 0; f < count; ++f) {
-      const Triangle t = triangle(surface, f);
-      centres[f] = Vec3((t[0] + t[1] + t[2]) / 3.0);
-    }
-    nodes_.reserve(2 * (count / kLeafSize + 1));
-    split(surface, centres, order, 0, static_cast<std::uint32_t>(count));
-    triangles_.reserve(count);
-    for (const std::uint32_t f : order) triangles_.push_back(triangle(surface, f));
-  }
-
-  [[nodiscard]] const Triangle& at(std::uint32_t i) const { return triangles_[i]; }
-
-  /// The squared distance of p from its nearest triangle. `hint` is any triangle, best one near p; becomes
-  /// the nearest.
-  [[nodiscard]] double nearest(const DVec3& p, std::uint32_t& hint) const {
-    double best = squared_distance(p, triangles_[hint]);
-    std::array<std::pair<std::uint32_t, double>, 64> stack;
-    std::size_t top = 0;
-    stack[top++] = {0, squared_distance_to_box(p, nodes_[0])};
-    while (top > 0) {
-      const auto [n, bound] = stack[--top];
-      if (bound >= best) continue;
-      const Node& node = nodes_[n];
-      if (node.count > 0) {
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-          const double d = squared_distance(p, triangles_[i]);
-          if (d < best) {
-            best = d;
-            hint = i;
-          }
-        }
-        continue;
-      }
-      std::pair<std::uint32_t, double> nearer{n + 1, squared_distance_to_box(p, nodes_[n + 1])};
-      std::pair<std::uint32_t, double> farther{node.first, squared_distance_to_box(p, nodes_[node.first])};
-      if (farther.second < nearer.second) std::swap(nearer, farther);
-      stack[top++] = farther;
-      stack[top++] = nearer;
-    }
-    return best;
-  }
-
- private:
-  struct Node {
-    Vec3 low, high;
-    std::uint32_t first =
-        0;  ///< Leaf: first triangle. Else: the second child; the first one follows its parent.
-    std::uint32_t count = 0;  ///< Leaf: triangles. Else 0.
-  };
-
-  static double squared_distance_to_box(const DVec3& p, const Node& node) {
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) {
-      const double outside = std::max({node.low[i] - p[i], p[i] - node.high[i], 0.0});
-      sum += outside * outside;
-    }
-    return sum;
-  }
-
-  /// The node of order[first, last) and those below it. Halving bounds the depth by 32.
-  void split(const TriangleSurface& surface, const std::vector<Vec3>& centres,
-             std::vector<std::uint32_t>& order, std::uint32_t first, std::uint32_t last) {
-    const std::size_t index = nodes_.size();
-    Node node{Vec3(std::numeric_limits<float>::infinity()), Vec3(-std::numeric_limits<float>::infinity()),
-              first, last - first};
-    Vec3 low = node.low, high = node.high;
-    for (std::uint32_t i = first; i < last; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& p = surface.points[surface.corners[3 * std::size_t{order[i]} + k]];
-        node.low = glm::min(node.low, p);
-        node.high = glm::max(node.high, p);
-      }
-      low = glm::min(low, centres[order[i]]);
-      high = glm::max(high, centres[order[i]]);
-    }
-    nodes_.push_back(node);
-    if (last - first <= kLeafSize) return;
-    const Vec3 extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::uint32_t middle = first + (last - first) / 2;
-    std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       return std::pair(centres[a][axis], a) < std::pair(centres[b][axis], b);
-                     });
-    split(surface, centres, order, first, middle);
-    nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[index].count = 0;
-    split(surface, centres, order, middle, last);
-  }
-
-  std::vector<Node> nodes_;
-  std::vector<Triangle> triangles_;
-};
 
 double area(const Triangle& t) {
   const DVec3 normal = cross(t[1] - t[0], t[2] - t[0]);
@@ -145,7 +43,7 @@ DVec3 normal_of(const Triangle& t) {
 /// Bounds the one-sided Hausdorff distance from one surface to the triangles of a tree.
 class HausdorffBounds {
  public:
-  HausdorffBounds(const TriangleSurface& from, const Tree& tree, double low, double tolerance)
+  HausdorffBounds(const TriangleSurface& from, const detail::TriangleTree& tree, double low, double tolerance)
       : from_(from), tree_(tree), low2_(low * low), factor2_((1 + tolerance) * (1 + tolerance)) {}
 
   /// Errors: kInterrupted, told by `progress` (which hears `done` again and again).
@@ -218,7 +116,7 @@ class HausdorffBounds {
   }
 
   const TriangleSurface& from_;
-  const Tree& tree_;
+  const detail::TriangleTree& tree_;
   double low2_;  ///< Some point is this far away.
   double factor2_;
   double passed2_ = 0;  ///< No point of the pieces let go is further away.
@@ -229,7 +127,7 @@ class HausdorffBounds {
 Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSurface& to,
                                   const SurfaceDistanceOptions& options, const Progress& progress,
                                   double begin) {
-  const Tree tree(to);
+  const detail::TriangleTree tree(to.points, to.corners);
   const std::size_t faces = from.corners.size() / 3;
   double total = 0;
   for (std::size_t f = 0; f < faces; ++f) total += area(triangle(from, f));
@@ -295,13 +193,9 @@ Result<void> check(const TriangleSurface& surface) {
 }
 
 double diagonal_of(const TriangleSurface& surface) {
-  Vec3 low(std::numeric_limits<float>::infinity()), high = -low;
-  for (const std::uint32_t corner : surface.corners) {
-    low = glm::min(low, surface.points[corner]);
-    high = glm::max(high, surface.points[corner]);
-  }
-  const DVec3 extent = DVec3(high) - DVec3(low);
-  return std::sqrt(dot(extent, extent));
+  Bounds bounds;
+  for (const std::uint32_t corner : surface.corners) bounds.add(surface.points[corner]);
+  return bounds.diagonal();
 }
 
 }  // namespace

@@ -3,20 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
-#include <vkmesh/math/vec.h>
+#include <vkmesh/mesh/triangle_surface.h>
 
 namespace vkmesh {
-
-/// Triangles as points and three corners each; IndexedFaceSet::corners and HalfEdgeMesh::origins() fit.
-/// Borrowed.
-struct TriangleSurface {
-  std::span<const Vec3> points;
-  std::span<const std::uint32_t> corners;  ///< Each < points.size(); a multiple of three.
-};
 
 struct SurfaceDistanceOptions {
   std::size_t samples = 200000;  ///< Points taken on each surface, at least 1. Default 200,000.

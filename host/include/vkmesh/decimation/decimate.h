@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include <vkmesh/analysis/surface_distance.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/decimation/reason.h>
 #include <vkmesh/math/length.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
+#include <vkmesh/mesh/triangle_surface.h>
 
 namespace vkmesh {
 
