@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -10,6 +9,10 @@
 #include <vkmesh/analysis/surface_values.h>
 #include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/math/arithmetic.h>
+
+#include "base/disjoint_sets.h"
+#include "mesh/edge_records.h"
+#include "spatial/kd_tree.h"
 
 namespace vkmesh {
 namespace {
@@ -44,127 +47,27 @@ DVec3 newell(const IndexedFaceSet& mesh, std::size_t f) {
   return sum;
 }
 
-/// A side of a face, filed under the smaller of its points.
-struct Side {
-  std::uint32_t high, face;
-  bool ascending;
-};
-
-/// Nearest neighbours by halving boxes: a node is a range of `order`, split at its middle.
-class PointTree {
- public:
-  explicit PointTree(std::span<const Vec3> points) : points_(points), order_(points.size()) {
-    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-    axes_.resize(points.size());
-    build(0, order_.size());
-  }
-
-  /// The squared distance to the k-th nearest other point. `heap` is scratch.
-  float kth_squared_distance(std::uint32_t point, std::size_t k, std::vector<float>& heap) const {
-    heap.clear();
-    search(0, order_.size(), point, k, heap);
-    return heap.empty() ? 0.0f : heap.front();
-  }
-
- private:
-  void build(std::size_t begin, std::size_t end) {
-    if (end - begin < 2) return;
-    Vec3 low = points_[order_[begin]], high = low;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3& p = points_[order_[i]];
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], p[a]);
-        high[a] = std::max(high[a], p[a]);
-      }
-    }
-    int axis = 0;
-    for (int a = 1; a < 3; ++a)
-      if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
-    const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(middle), at(end),
-                     [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
-    axes_[middle] = static_cast<std::uint8_t>(axis);
-    build(begin, middle);
-    build(middle + 1, end);
-  }
-
-  void search(std::size_t begin, std::size_t end, std::uint32_t point, std::size_t k,
-              std::vector<float>& heap) const {
-    if (begin == end) return;
-    const std::size_t middle = begin + (end - begin) / 2;
-    const Vec3 away = points_[point] - points_[order_[middle]];
-    if (order_[middle] != point) {
-      const float distance = away.x * away.x + away.y * away.y + away.z * away.z;
-      if (heap.size() < k || distance < heap.front()) {
-        if (heap.size() == k) {
-          std::pop_heap(heap.begin(), heap.end());
-          heap.pop_back();
-        }
-        heap.push_back(distance);
-        std::push_heap(heap.begin(), heap.end());
-      }
-    }
-    const float across = away[axes_[middle]];
-    const bool lower = across < 0.0f;
-    if (lower) {
-      search(begin, middle, point, k, heap);
-    } else {
-      search(middle + 1, end, point, k, heap);
-    }
-    if (heap.size() == k && across * across > heap.front()) return;
-    if (lower) {
-      search(middle + 1, end, point, k, heap);
-    } else {
-      search(begin, middle, point, k, heap);
-    }
-  }
-
-  std::span<const Vec3> points_;
-  std::vector<std::uint32_t> order_;
-  std::vector<std::uint8_t> axes_;  ///< Of the node whose middle lies there.
-};
-
 }  // namespace
 
 Result<std::vector<SurfaceEdge>> surface_edges(const IndexedFaceSet& mesh) {
   return detail::catching([&]() -> Result<std::vector<SurfaceEdge>> {
     VKMESH_CHECK(require_points(mesh));
-    const auto for_each_side = [&](auto&& f) {
-      for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-        const auto corners = mesh.face(face);
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-          const std::uint32_t from = corners[i], to = corners[i + 1 == corners.size() ? 0 : i + 1];
-          if (from != to) f(from, to, static_cast<std::uint32_t>(face));
-        }
-      }
-    };
-    std::vector<std::uint32_t> starts(mesh.points.size() + 1, 0);
-    for_each_side(
-        [&](std::uint32_t from, std::uint32_t to, std::uint32_t) { ++starts[std::min(from, to) + 1]; });
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    std::vector<Side> sides(starts.back());
-    std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
-    for_each_side([&](std::uint32_t from, std::uint32_t to, std::uint32_t face) {
-      sides[next[std::min(from, to)]++] = {std::max(from, to), face, from < to};
-    });
-
+    const detail::FaceOfCorner face_of(mesh);
+    detail::EdgeRecords records =
+        detail::distribute_edges(mesh.points.size(), mesh.corners, mesh.face_offsets, mesh.face_count());
     std::vector<SurfaceEdge> edges;
-    edges.reserve(sides.size() / 2);
-    for (std::uint32_t a = 0; a < mesh.points.size(); ++a) {
-      const auto begin = sides.begin() + starts[a], end = sides.begin() + starts[a + 1];
-      std::sort(begin, end, [](const Side& x, const Side& y) {
-        return std::pair(x.high, x.face) < std::pair(y.high, y.face);
-      });
-      for (auto side = begin; side != end;) {
-        SurfaceEdge edge{a, side->high, 0, side->face, kInvalid, false};
-        const auto first = side;
-        for (; side != end && side->high == edge.b; ++side) ++edge.faces;
-        if (edge.faces > 1) edge.second_face = (first + 1)->face;
-        edge.opposed = edge.faces == 2 && first->ascending != (first + 1)->ascending;
-        edges.push_back(edge);
-      }
-    }
+    edges.reserve(mesh.corners.size() / 2);
+    records.for_each_group(
+        0, mesh.points.size(), [&](std::uint32_t a, std::uint32_t b, std::span<const std::uint64_t> uses) {
+          const auto h = static_cast<std::uint32_t>(uses[0]);
+          SurfaceEdge edge{a, b, static_cast<std::uint32_t>(uses.size()), face_of(h), kInvalid, false};
+          if (uses.size() > 1) {
+            const auto g = static_cast<std::uint32_t>(uses[1]);
+            edge.second_face = face_of(g);
+            edge.opposed = uses.size() == 2 && mesh.corners[h] != mesh.corners[g];
+          }
+          edges.push_back(edge);
+        });
     return edges;
   });
 }
@@ -243,36 +146,26 @@ Result<std::vector<float>> valences(const IndexedFaceSet& mesh, std::span<const 
 Result<ConnectedComponents> connected_components(const IndexedFaceSet& mesh) {
   return detail::catching([&]() -> Result<ConnectedComponents> {
     VKMESH_CHECK(require_points(mesh));
-    std::vector<std::uint32_t> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), std::uint32_t{0});
-    const auto root = [&](std::uint32_t v) {
-      while (parent[v] != v) v = parent[v] = parent[parent[v]];
-      return v;
-    };
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-      const auto corners = mesh.face(f);
-      for (std::size_t i = 1; i < corners.size(); ++i) {
-        const std::uint32_t a = root(corners[0]), b = root(corners[i]);
-        // The smaller point stays the root: it is the component's first.
-        parent[std::max(a, b)] = std::min(a, b);
-      }
-    }
-    std::vector<std::size_t> faces(mesh.points.size(), 0);
+    detail::DisjointSets sets(mesh.points.size());
     for (std::size_t f = 0; f < mesh.face_count(); ++f)
-      if (!mesh.face(f).empty()) ++faces[root(mesh.face(f)[0])];
-    std::vector<std::uint32_t> roots;
-    for (std::uint32_t v = 0; v < faces.size(); ++v)
-      if (faces[v] > 0) roots.push_back(v);
-    std::stable_sort(roots.begin(), roots.end(),
+      for (const std::uint32_t c : mesh.face(f)) sets.unite(mesh.face(f)[0], c);
+    const detail::NumberedSets components = detail::number_sets(sets);
+    std::vector<std::size_t> faces(components.sizes.size(), 0);
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      if (!mesh.face(f).empty()) ++faces[components.of[mesh.face(f)[0]]];
+    std::vector<std::uint32_t> by_size;
+    for (std::uint32_t i = 0; i < faces.size(); ++i)
+      if (faces[i] > 0) by_size.push_back(i);
+    std::stable_sort(by_size.begin(), by_size.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return faces[a] > faces[b]; });
     ConnectedComponents result;
-    std::vector<float> number(mesh.points.size(), kNaN);
-    for (std::size_t i = 0; i < roots.size(); ++i) {
-      number[roots[i]] = static_cast<float>(i);
-      result.faces.push_back(faces[roots[i]]);
+    std::vector<float> rank(faces.size(), kNaN);
+    for (std::size_t i = 0; i < by_size.size(); ++i) {
+      rank[by_size[i]] = static_cast<float>(i);
+      result.faces.push_back(faces[by_size[i]]);
     }
     result.of_point.resize(mesh.points.size());
-    for (std::uint32_t v = 0; v < mesh.points.size(); ++v) result.of_point[v] = number[root(v)];
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) result.of_point[v] = rank[components.of[v]];
     return result;
   });
 }
@@ -314,7 +207,7 @@ Result<std::vector<float>> point_spacing(std::span<const Vec3> points, unsigned 
   return detail::catching([&]() -> Result<std::vector<float>> {
     std::vector<float> spacing(points.size(), 0.0f);
     if (points.size() < 2 || neighbours == 0) return spacing;
-    const PointTree tree(points);
+    const detail::KdTree tree(points);
     std::vector<float> heap, positive;
     for (std::size_t v = 0; v < points.size(); ++v) {
       spacing[v] = std::sqrt(tree.kth_squared_distance(static_cast<std::uint32_t>(v), neighbours, heap));

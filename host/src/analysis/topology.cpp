@@ -70,14 +70,14 @@ class OrientedSets {
 class Analysis {
  public:
   explicit Analysis(const IndexedFaceSet& mesh)
-      : mesh_(mesh), oriented_(mesh.face_count()), joined_(mesh.face_count()), fans_(mesh.corners.size()) {
-    face_of_.resize(mesh.is_triangles() ? 0 : mesh.corners.size());
+      : mesh_(mesh),
+        face_of_(mesh),
+        oriented_(mesh.face_count()),
+        joined_(mesh.face_count()),
+        fans_(mesh.corners.size()) {
     degenerate_.resize(mesh.face_count());
-    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
       degenerate_[f] = detail::is_degenerate(mesh.face(f));
-      if (!mesh.is_triangles())
-        std::fill(face_of_.begin() + mesh.face_offsets[f], face_of_.begin() + mesh.face_offsets[f + 1], f);
-    }
   }
 
   SurfaceTopology run() {
@@ -115,10 +115,9 @@ class Analysis {
     bool misoriented;
   };
 
-  std::uint32_t face_of(std::uint32_t h) const { return mesh_.is_triangles() ? h / 3 : face_of_[h]; }
   std::uint32_t next(std::uint32_t h) const {
     if (mesh_.is_triangles()) return h % 3 == 2 ? h - 2 : h + 1;
-    const std::uint32_t f = face_of_[h];
+    const std::uint32_t f = face_of_(h);
     return h + 1 == mesh_.face_offsets[f + 1] ? mesh_.face_offsets[f] : h + 1;
   }
   /// The corner of half-edge h's face at that of its ends.
@@ -135,16 +134,16 @@ class Analysis {
     records.for_each_group(0, mesh_.points.size(), [&](std::uint32_t a, std::uint32_t b, auto uses) {
       sound.clear();
       for (const std::uint64_t use : uses)
-        if (!degenerate_[face_of(static_cast<std::uint32_t>(use))])
+        if (!degenerate_[face_of_(static_cast<std::uint32_t>(use))])
           sound.push_back(static_cast<std::uint32_t>(use));
       if (sound.empty()) return;
       const std::uint32_t h = sound[0];
       bool misoriented = false;
-      for (std::size_t i = 1; i < sound.size(); ++i) joined_.unite(face_of(h), face_of(sound[i]));
+      for (std::size_t i = 1; i < sound.size(); ++i) joined_.unite(face_of_(h), face_of_(sound[i]));
       if (sound.size() == 2) {
         const std::uint32_t g = sound[1];
         misoriented = mesh_.corners[h] == mesh_.corners[g];
-        oriented_.relate(face_of(h), face_of(g), !misoriented);
+        oriented_.relate(face_of_(h), face_of_(g), !misoriented);
         fans_.unite(corner_at(h, a), corner_at(g, a));
         fans_.unite(corner_at(h, b), corner_at(g, b));
       }
@@ -169,7 +168,7 @@ class Analysis {
   }
 
   void count_edge(const Edge& edge) {
-    Topology& t = component(face_of(edge.half_edge));
+    Topology& t = component(face_of_(edge.half_edge));
     ++t.edges;
     t.boundary_edges += edge.uses == 1 ? 1u : 0u;
     t.non_manifold_edges += edge.uses > 2 ? 1u : 0u;
@@ -182,8 +181,8 @@ class Analysis {
     };
     std::vector<Fan> fans;
     for (std::uint32_t c = 0; c < mesh_.corners.size(); ++c)
-      if (!degenerate_[face_of(c)] && fans_.find(c) == c)
-        fans.push_back({mesh_.corners[c], result_.component_of_face[face_of(c)]});
+      if (!degenerate_[face_of_(c)] && fans_.find(c) == c)
+        fans.push_back({mesh_.corners[c], result_.component_of_face[face_of_(c)]});
     std::sort(fans.begin(), fans.end(), [](const Fan& a, const Fan& b) {
       return a.point != b.point ? a.point < b.point : a.component < b.component;
     });
@@ -218,11 +217,11 @@ class Analysis {
           loops.unite(other, i);
       }
     for (std::uint32_t i = 0; i < boundary.size(); ++i)
-      if (loops.find(i) == i) ++component(face_of(boundary[i])).boundary_loops;
+      if (loops.find(i) == i) ++component(face_of_(boundary[i])).boundary_loops;
   }
 
   const IndexedFaceSet& mesh_;
-  std::vector<std::uint32_t> face_of_;  ///< Of each corner; empty for triangles.
+  detail::FaceOfCorner face_of_;
   std::vector<std::uint8_t> degenerate_;
   std::vector<Edge> edges_;
   OrientedSets oriented_;

@@ -17,6 +17,8 @@ class DisjointSets {
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
   }
 
+  [[nodiscard]] std::size_t size() const { return parent_.size(); }
+
   /// The smallest element of the set of `i`. O(log n) amortised.
   [[nodiscard]] std::uint32_t find(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
@@ -35,5 +37,28 @@ class DisjointSets {
  private:
   std::vector<std::uint32_t> parent_;
 };
+
+/// Sets numbered in ascending order of their smallest elements: the connected components of what was united.
+struct NumberedSets {
+  std::vector<std::uint32_t> of;   ///< The number of each element's set.
+  std::vector<std::size_t> sizes;  ///< The number of elements of each set.
+};
+
+/// O(n log n) for n elements, in practice linear.
+[[nodiscard]] inline NumberedSets number_sets(DisjointSets& sets) {
+  NumberedSets result;
+  result.of.resize(sets.size());
+  for (std::uint32_t i = 0; i < result.of.size(); ++i) {
+    const std::uint32_t first = sets.find(i);
+    if (first == i) {
+      result.of[i] = static_cast<std::uint32_t>(result.sizes.size());
+      result.sizes.push_back(0);
+    } else {
+      result.of[i] = result.of[first];
+    }
+    ++result.sizes[result.of[i]];
+  }
+  return result;
+}
 
 }  // namespace vkmesh::detail

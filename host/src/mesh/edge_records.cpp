@@ -37,6 +37,13 @@ bool is_degenerate(std::span<const std::uint32_t> face) {
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
+FaceOfCorner::FaceOfCorner(const IndexedFaceSet& mesh) {
+  if (mesh.is_triangles()) return;
+  faces_.resize(mesh.corners.size());
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+    std::fill(faces_.begin() + mesh.face_offsets[f], faces_.begin() + mesh.face_offsets[f + 1], f);
+}
+
 // Sorts the records of one point. Most points have eight or fewer (six on a regular mesh), and a branch on
 // the data costs more than the rest, so these pass through Batcher's odd-even merge network.
 void EdgeRecords::sort_records(std::span<std::uint64_t> records) {

@@ -9,6 +9,7 @@
 
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/handles.h>
+#include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::detail {
 
@@ -19,6 +20,19 @@ Result<void> check_face_set(std::size_t point_count, std::span<const std::uint32
 
 /// Fewer than three corners, or a point repeated. O(n) for triangles, O(n log n) for n corners.
 [[nodiscard]] bool is_degenerate(std::span<const std::uint32_t> face);
+
+/// The face of each corner, and so of the half-edge that starts there. Looked up for polygons only.
+class FaceOfCorner {
+ public:
+  /// O(1) for triangles, else O(corners).
+  explicit FaceOfCorner(const IndexedFaceSet& mesh);
+  [[nodiscard]] std::uint32_t operator()(std::uint32_t corner) const {
+    return faces_.empty() ? corner / 3 : faces_[corner];
+  }
+
+ private:
+  std::vector<std::uint32_t> faces_;  ///< Empty for triangles.
+};
 
 /// Calls visit(half-edge, from, to) for each edge of the faces [first, last), in order.
 template <class Visit>

@@ -12,6 +12,7 @@
 
 #include "base/disjoint_sets.h"
 #include "mesh/edge_matching.h"
+#include "mesh/edge_records.h"
 #include "repair/repair.h"
 
 namespace vkmesh {
@@ -55,17 +56,16 @@ std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail:
                                        const std::vector<std::uint8_t>& flipped) {
   if (std::find(flipped.begin(), flipped.end(), 1) == flipped.end()) return {};
   const std::size_t faces = mesh.face_count();
-  std::vector<std::uint32_t> face_of(mesh.corners.size());
-  for (std::uint32_t f = 0, c = 0; f < faces; ++f)
-    for (std::size_t i = 0; i < mesh.face(f).size(); ++i, ++c) face_of[c] = f;
+  const detail::FaceOfCorner face_of(mesh);
+  const auto half_edges = static_cast<std::uint32_t>(mesh.corners.size());
   detail::DisjointSets components(faces);
-  for (std::size_t h = 0; h < face_of.size(); ++h)
-    if (matching.twin[h] != kInvalid) components.unite(face_of[h], face_of[matching.twin[h]]);
+  for (std::uint32_t h = 0; h < half_edges; ++h)
+    if (matching.twin[h] != kInvalid) components.unite(face_of(h), face_of(matching.twin[h]));
 
   std::vector<std::uint8_t> open(faces, 0), touched(faces, 0);
   std::vector<double> volume(faces, 0);
-  for (std::size_t h = 0; h < face_of.size(); ++h)
-    if (matching.twin[h] == kInvalid) open[components.find(face_of[h])] = 1;
+  for (std::uint32_t h = 0; h < half_edges; ++h)
+    if (matching.twin[h] == kInvalid) open[components.find(face_of(h))] = 1;
   for (std::uint32_t f = 0; f < faces; ++f) {
     const std::uint32_t root = components.find(f);
     if (flipped[f]) touched[root] = 1;

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <vkmesh/analysis/topology.h>
+#include <vkmesh/mesh/connected_components.h>
 #include <vkmesh/mesh/memory.h>
 #include <vkmesh/mesh/mesh_walks.h>
 #include <vkmesh/repair/consolidate.h>

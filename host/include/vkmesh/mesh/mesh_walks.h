@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/base/result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
 
 namespace vkmesh {
@@ -27,13 +26,5 @@ void walk_breadth_first(const HalfEdgeMesh& mesh, FaceId start, Visit&& visit) {
         if (g.valid() && seen.insert(g.index).second) next.push_back(g);
     }
 }
-
-/// Components of a mesh: faces that hang together through shared edges.
-struct FaceComponents {
-  std::vector<std::uint32_t> of_face;  ///< Of each face the number of its component, by first faces.
-  std::vector<std::size_t> faces;      ///< Of each component.
-};
-/// O(half-edges). Errors: kOutOfMemory.
-[[nodiscard]] Result<FaceComponents> face_components(const HalfEdgeMesh& mesh);
 
 }  // namespace vkmesh

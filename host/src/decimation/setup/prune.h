@@ -12,7 +12,7 @@ struct Pruned {
 };
 
 /// Takes away each component whose bounding box has a diagonal of at most `size`, the one of most faces
-/// excepted. O(faces), 4 bytes a face for the time.
+/// excepted. O(faces), 8 bytes a face for the time.
 Pruned prune_components(CollapseMesh& mesh, float size);
 
 }  // namespace vkmesh::detail
