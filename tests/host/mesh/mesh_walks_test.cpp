@@ -1,6 +1,8 @@
 // Queries and walks on half-edges, against a search through everything.
 #include <algorithm>
+#include <new>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -87,18 +89,24 @@ TEST_CASE("a breadth-first walk meets every face of its component at its distanc
       });
     }
     std::size_t last = 0, visited = 0;
-    walk_breadth_first(mesh, FaceId(1), [&](FaceId f, std::size_t steps) {
+    REQUIRE(walk_breadth_first(mesh, FaceId(1), [&](FaceId f, std::size_t steps) {
       CHECK(distance[f.index] == steps);
       CHECK(steps >= last);
       last = steps;
       ++visited;
       return true;
-    });
+    }));
     const FaceComponents parts = face_components(mesh).value();
     CHECK(visited == parts.faces[parts.of_face[1]]);
     std::size_t few = 0;
-    walk_breadth_first(mesh, FaceId(0), [&](FaceId, std::size_t) { return ++few < 3; });
+    REQUIRE(walk_breadth_first(mesh, FaceId(0), [&](FaceId, std::size_t) { return ++few < 3; }));
     CHECK(few == 3);
+    const auto thrown = walk_breadth_first(
+        mesh, FaceId(0), [](FaceId, std::size_t) -> bool { throw std::runtime_error("no more"); });
+    CHECK(thrown.error().describe() == "unexpected exception: no more");
+    const auto full =
+        walk_breadth_first(mesh, FaceId(0), [](FaceId, std::size_t) -> bool { throw std::bad_alloc(); });
+    CHECK(full.error().code == ErrorCode::kOutOfMemory);
   }
 }
 
