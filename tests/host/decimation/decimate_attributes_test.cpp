@@ -23,10 +23,12 @@
 #include "decimation/decimation_state.h"
 #include "support/data.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 namespace vkmesh {
 namespace {
 
+using test::cross, test::dot;
 using test::half_edges, test::run, test::ways;
 
 /// A mesh with one attribute, whose values its corners name.
@@ -706,10 +708,6 @@ Best dense(const Textured& t, const std::set<std::uint32_t>& of, double unit, do
   for (const auto& [f, i] : meets) {
     const auto face = t.mesh.face(f);
     const DVec3 a(points[face[0]]), b(points[face[1]]), c(points[face[2]]);
-    const auto cross = [](const DVec3& u, const DVec3& v) {
-      return DVec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
-    };
-    const auto dot = [](const DVec3& u, const DVec3& v) { return u.x * v.x + u.y * v.y + u.z * v.z; };
     DVec3 normal = cross(b - a, c - a);
     const double twice = std::sqrt(dot(normal, normal));
     normal = normal / twice;

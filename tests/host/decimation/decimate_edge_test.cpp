@@ -30,19 +30,13 @@
 #include "math/triangle_distance.h"
 #include "support/data.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 namespace vkmesh {
 namespace {
 
 using test::half_edges, test::run, test::ways;
-
-template <class A, class B>
-DVec3 cross(const A& a, const B& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+using test::cross, test::dot;
 
 /// Does a history over again on triangles in a list, and judges each step: no half-edges, no quadrics.
 class Replay {

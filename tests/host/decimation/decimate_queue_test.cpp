@@ -18,21 +18,19 @@
 #include "decimation/order/monotone_queue.h"
 #include "support/data.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 namespace vkmesh {
 namespace {
 
 using detail::EdgeBatch;
 using detail::VertexRecord;
+using test::dot;
 
 struct Plane {
   DVec3 normal, point;
   double weight;
 };
-
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 double sum(const std::vector<Plane>& planes, const DVec3& x) {
   double total = 0;

@@ -23,6 +23,7 @@
 #include "decimation/setup/initial_quadrics.h"
 #include "mesh/edit/collapse_mesh.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 namespace vkmesh {
 namespace {
@@ -31,6 +32,7 @@ using detail::CollapseMesh;
 using detail::Partition;
 using detail::VertexRecord;
 using test::collapse_mesh_of;
+using test::cross, test::dot;
 
 /// The same with other numbers for the points.
 IndexedFaceSet shuffle(const IndexedFaceSet& mesh, std::uint32_t seed) {
@@ -41,13 +43,6 @@ IndexedFaceSet shuffle(const IndexedFaceSet& mesh, std::uint32_t seed) {
   for (std::size_t v = 0; v < place.size(); ++v) shuffled.points[place[v]] = mesh.points[v];
   for (std::uint32_t& c : shuffled.corners) c = place[c];
   return shuffled;
-}
-
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// Faces of different groups have a seam between them.

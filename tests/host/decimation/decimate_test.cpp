@@ -23,10 +23,12 @@
 #include "decimation/decimate_support.h"
 #include "support/data.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 namespace vkmesh {
 namespace {
 
+using test::cross, test::dot;
 using test::half_edges, test::run;
 
 int euler_characteristic(const HalfEdgeMesh& mesh) {
@@ -80,11 +82,7 @@ void check_sound(const HalfEdgeMesh& input, std::span<const Vec3> points, const 
 DVec3 normal_of(const HalfEdgeMesh& mesh, std::span<const Vec3> points, std::uint32_t f) {
   const DVec3 a(points[mesh.origins()[3 * f]]), b(points[mesh.origins()[3 * f + 1]]),
       c(points[mesh.origins()[3 * f + 2]]);
-  const DVec3 u = b - a, v = c - a;
-  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return cross(b - a, c - a);
 }
 
 std::vector<std::pair<std::string, IndexedFaceSet>> small_shapes() {

@@ -17,11 +17,13 @@
 #include "decimation/cost/retriangulation.h"
 #include "support/data.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 namespace vkmesh {
 namespace {
 
 using detail::RetriangulationAttributes, detail::RetriangulationBatch;
+using test::cross, test::dot, test::length;
 
 Decimated run(const IndexedFaceSet& mesh, DecimateOptions options) {
   options.operation = DecimateOperation::kVertexRemoval;
@@ -29,16 +31,6 @@ Decimated run(const IndexedFaceSet& mesh, DecimateOptions options) {
   if (!result) FAIL(result.error().describe());
   REQUIRE(validate(result->mesh));
   return std::move(*result);
-}
-
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-double length(const DVec3& a) {
-  return std::sqrt(dot(a, a));
 }
 
 using Triangle = std::array<std::size_t, 3>;

@@ -14,6 +14,7 @@
 #include <vkmesh/mesh/triangulate.h>
 
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 using namespace vkmesh;
 using namespace vkmesh::test;
@@ -42,10 +43,6 @@ DVec3 area_vector(const IndexedFaceSet& mesh, std::span<const std::uint32_t> cor
     sum += DVec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
   }
   return sum;
-}
-
-double length(const DVec3& v) {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
 IndexedFaceSet triangulated(const IndexedFaceSet& mesh) {
