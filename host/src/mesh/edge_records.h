@@ -59,7 +59,7 @@ struct EdgeRecords {
   static constexpr std::uint32_t kLoop = kInvalid;
 
   std::vector<std::uint64_t> records;
-  std::vector<std::uint32_t> end;  ///< Of the records of each point: where those of the next begin.
+  std::vector<std::uint32_t> end;  ///< Where the records of each point end.
 
   [[nodiscard]] std::span<std::uint64_t> of(std::size_t point) {
     const std::size_t begin = point == 0 ? 0 : end[point - 1];

@@ -108,7 +108,7 @@ void drop_isolated_points(Consolidated& result) {
   result.source_point = std::move(source);
 }
 
-/// Names of the input of welding, for names of its output.
+/// Maps welded point indices back to input indices.
 void name_before_welding(std::vector<std::uint32_t>& source_point, const std::vector<std::uint32_t>& point_of,
                          std::size_t points) {
   std::vector<std::uint32_t> first(points, kInvalid);

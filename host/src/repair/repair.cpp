@@ -211,7 +211,7 @@ class Repair {
   Result<bool> done() {
     bool triangles = true;
     for (std::size_t f = 0; f < source_face_.size(); ++f) triangles = triangles && mesh_.face(f).size() == 3;
-    // Of triangles the faces of corners need not be looked up.
+    // Triangles without offsets: the faces of corners need not be looked up.
     const std::span<const std::uint32_t> offsets = mesh_.face_offsets;
     VKMESH_TRY(matching_,
                match_edges(mesh_.points.size(), mesh_.corners, triangles ? offsets.first(0) : offsets));
@@ -393,8 +393,8 @@ class Repair {
   ConsolidateReport& report_;
   IndexedFaceSet mesh_;  ///< Offsets are kept for triangles as well, until the end.
   std::vector<std::uint32_t> source_point_, source_corner_, source_face_;
-  std::vector<std::uint32_t> face_of_;  ///< Of each corner.
-  std::vector<std::uint32_t> mate_;     ///< Of each half-edge, the one across its edge, or kInvalid.
+  std::vector<std::uint32_t> face_of_;  ///< The face of each corner.
+  std::vector<std::uint32_t> mate_;     ///< The half-edge across each one's edge, or kInvalid.
   std::vector<std::vector<std::uint32_t>>
       non_manifold_edges_;  ///< The half-edges of edges of three or more faces.
   std::vector<std::uint8_t> flipped_;

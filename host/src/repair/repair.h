@@ -1,4 +1,4 @@
-// What consolidation does to a mesh that is no oriented manifold.
+// Repairs a mesh that is no oriented manifold: steps 2 to 5 of consolidation.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Repaired {
   std::vector<std::uint32_t> source_point, source_face;
   /// For each face, whether it runs the other way than in the input.
   std::vector<std::uint8_t> flipped;
-  Matching matching;  ///< Of `mesh`.
+  Matching matching;  ///< The edges of `mesh`, paired.
 };
 
 /// Steps 2 to 5 of consolidate(): the result is an oriented manifold. Counts in `report` what it does.

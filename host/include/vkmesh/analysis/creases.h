@@ -32,7 +32,7 @@ struct CreaseOptions {
 
 /// A chain of crease edges between two vertices where it ends or meets others, or a loop.
 struct Crease {
-  std::vector<std::uint32_t> vertices;    ///< In order; of a loop the first is not repeated.
+  std::vector<std::uint32_t> vertices;    ///< In order; a loop does not repeat its first.
   std::vector<std::uint32_t> half_edges;  ///< Edge i, by the smaller of its half-edges, leaves vertices[i].
   bool closed = false;
   double length = 0.0;  ///< In units of the positions.

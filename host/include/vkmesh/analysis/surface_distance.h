@@ -13,7 +13,7 @@ namespace vkmesh {
 struct SurfaceDistanceOptions {
   std::size_t samples = 200000;  ///< Points taken on each surface, at least 1. Default 200,000.
   std::uint32_t seed =
-      1;  ///< Of their positions; the same seed gives the same samples everywhere. Default 1.
+      1;  ///< Seeds their positions; the same seed gives the same samples everywhere. Default 1.
   /// How far apart the bounds of the Hausdorff distance may be, as a share of it. 0 (default) asks for none.
   double hausdorff_tolerance = 0;
 };
@@ -22,7 +22,7 @@ struct SurfaceDistanceOptions {
 struct DistanceSummary {
   double mean = 0;
   double root_mean_square = 0;
-  double maximum = 0;  ///< Of the samples: a lower bound of the one-sided Hausdorff distance.
+  double maximum = 0;  ///< The largest of the samples: a lower bound of the one-sided Hausdorff distance.
   /// Between these the one-sided Hausdorff distance lies, whatever the samples; both 0 unless
   /// `hausdorff_tolerance` asks for them.
   double hausdorff_low = 0, hausdorff_high = 0;

@@ -53,10 +53,10 @@ struct SurfaceEdge {
 
 struct ConnectedComponents {
   std::vector<float> of_point;     ///< Number of the component; NaN for a point of no face.
-  std::vector<std::size_t> faces;  ///< Of each component, in descending order.
+  std::vector<std::size_t> faces;  ///< The number of faces of each component, descending.
 };
-/// Faces that share points hang together. Components are numbered by faces, the largest 0; equal ones in
-/// order of their first point.
+/// The vertex-connected components: faces that share a point are of one. Components are numbered by faces,
+/// the largest 0; equal ones in order of their first point.
 [[nodiscard]] Result<ConnectedComponents> connected_components(const IndexedFaceSet& mesh);
 
 /// For each triangle 4√3 area / (sum of squared sides): 1 if equilateral, 0 without area. Errors: kUnsuitable

@@ -17,15 +17,15 @@ struct Topology {
   std::size_t points = 0;          ///< Those of its faces: isolated points are no part of a surface.
   std::size_t edges = 0;           ///< Distinct unordered pairs of points that some face joins.
   std::size_t faces = 0;           ///< Without degenerate ones.
-  std::size_t boundary_edges = 0;  ///< Of one face.
+  std::size_t boundary_edges = 0;  ///< Edges of one face.
   /// Chains of boundary edges that follow each other around the fans of their points. Every one is closed
   /// where no edge has three or more faces; a chain that ends at such an edge counts as one.
   std::size_t boundary_loops = 0;
-  std::size_t non_manifold_edges = 0;  ///< Of three or more faces.
+  std::size_t non_manifold_edges = 0;  ///< Edges of three or more faces.
   /// Points whose faces, joined across edges of two faces, form more than one fan. Both ends of a
   /// non-manifold edge are among them.
   std::size_t non_manifold_vertices = 0;
-  std::size_t misoriented_edges = 0;  ///< Of two faces that run along it in the same direction.
+  std::size_t misoriented_edges = 0;  ///< Edges of two faces that run along it in the same direction.
 
   /// Every edge has one face or two, and the faces of every point form one fan, open or closed.
   [[nodiscard]] bool manifold() const { return non_manifold_edges == 0 && non_manifold_vertices == 0; }
@@ -48,7 +48,7 @@ struct Topology {
 
 struct SurfaceTopology {
   Topology whole;
-  /// Components are faces that hang together through shared edges; in order of their first faces. What they
+  /// Components are edge-connected faces; in order of their first faces. What they
   /// say of themselves leaves the others out: two tori that share a point are two manifold tori.
   std::vector<Topology> components;
   std::vector<std::uint32_t> component_of_face;  ///< kInvalid for degenerate faces.
@@ -61,7 +61,7 @@ struct SurfaceTopology {
 
 /// What is odd about the elements of a face set, each on its own.
 struct ElementDefects {
-  std::size_t isolated_points = 0;   ///< Of no face.
+  std::size_t isolated_points = 0;   ///< Points that no face uses.
   std::size_t duplicate_points = 0;  ///< With the coordinates of an earlier one.
   std::size_t degenerate_faces = 0;  ///< Fewer than three corners, or a point repeated.
   std::size_t duplicate_faces = 0;   ///< With the points of an earlier one, in the same cyclic order or its

@@ -1,4 +1,4 @@
-// Node-based neighbour lists: for each vertex its neighbours in cyclic order.
+// Vertex adjacency (CSR): for each vertex its neighbours in cyclic order.
 #pragma once
 
 #include <cstddef>

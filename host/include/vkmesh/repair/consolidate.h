@@ -53,7 +53,7 @@ struct ConsolidateReport {
   std::size_t removed_duplicate_faces = 0;   ///< The same points as an earlier face.
   std::size_t repaired_polygons = 0;  ///< That repeated a point: the repetition left out, or cut at it.
   std::size_t removed_points = 0;     ///< Isolated ones that were not to be kept.
-  std::size_t split_edges = 0;        ///< Of three or more faces: parted into pairs and boundary edges.
+  std::size_t split_edges = 0;        ///< Non-manifold ones, split into pairs and boundary edges.
   std::size_t split_points = 0;       ///< Points that were given copies, one for each fan of faces but one.
   std::size_t added_points = 0;       ///< Those copies.
   std::size_t flipped_faces = 0;
@@ -89,7 +89,7 @@ struct Consolidated {
 ///    of its edges has as many faces one way as the other, as the wall between two solids has;
 /// 3. faces that share an edge of two faces are flipped to agree, as the larger part of each such sheet lies;
 ///    where a sheet is not orientable it is cut along the edges that still disagree;
-/// 4. edges of three or more faces are parted: where as many faces run one way as the other, into the pairs
+/// 4. edges of three or more faces are split: where as many faces run one way as the other, into the pairs
 ///    between which the thinnest wedges of solid lie, as where two solids touch along an edge; else into the
 ///    flattest pairs of opposite direction, the rest becoming boundary;
 /// 5. a point whose faces form several fans is given a copy at the same place for each but the first;
