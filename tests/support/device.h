@@ -14,7 +14,7 @@ std::string device_name();
 /// Whether SwiftShader is the context's driver.
 bool is_swiftshader(const Context& context);
 
-/// Whether VKMESH_GPU_ASSISTED is 1. Some tests then take smaller shapes: docs/design.md says why.
+/// Whether VKMESH_GPU_ASSISTED is 1. Some tests then take smaller shapes: docs/testing.md says why.
 bool gpu_assisted();
 
 /// Options that open the test device with validation and synchronization validation, and GPU-assisted

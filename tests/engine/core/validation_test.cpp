@@ -102,7 +102,7 @@ TEST_CASE("GPU-assisted validation sees reads past the end of a buffer, of kerne
     };
     draw();
     CHECK(context->take_validation_messages().empty());
-    // Eight, for docs/design.md says what becomes of groups that are not full.
+    // Eight, for docs/testing.md says what becomes of groups that are not full.
     geometry.triangles += 8;
     geometry.points += 8;
     draw();

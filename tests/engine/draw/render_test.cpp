@@ -32,7 +32,7 @@ namespace {
 constexpr Color kWhite{255, 255, 255, 255};
 
 /// Subdivisions of a sphere. Under GPU-assisted validation few enough for llvmpipe to take all vertices at
-/// once: docs/design.md says why.
+/// once: docs/testing.md says why.
 std::uint32_t levels(std::uint32_t wanted) {
   return gpu_assisted() ? std::min(wanted, 3u) : wanted;
 }
@@ -69,7 +69,7 @@ Picture draw(const DrawGeometry& geometry, const DrawStyle& style, const Camera&
 }
 
 /// Under GPU-assisted validation repeats the last values until there are eight elements or a multiple, as
-/// llvmpipe then needs (docs/design.md). What is drawn a second time, or has no area, does not show.
+/// llvmpipe then needs (docs/testing.md). What is drawn a second time, or has no area, does not show.
 template <class T>
 std::vector<T> filled(std::span<const T> values, std::size_t per_element = 1, std::size_t repeated = 1) {
   std::vector<T> result(values.begin(), values.end());

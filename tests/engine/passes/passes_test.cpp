@@ -270,7 +270,7 @@ TEST_CASE("passes equal their references bit for bit on the dragon") {
   check_exact(set);
 }
 
-// Under GPU-assisted validation with at most 520 faces around a vertex: docs/design.md says why.
+// Under GPU-assisted validation with at most 520 faces around a vertex: docs/testing.md says why.
 TEST_CASE("bilateral smoothing equals its reference with widths from a part of an edge to the whole mesh") {
   const bool few = test::gpu_assisted();
   for (IndexedFaceSet set :
