@@ -212,7 +212,7 @@ void add_info(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("info", "Counts, defects and topology of a mesh");
   command->footer(
       "Any mesh that can be read is described, a defective one too; the exit code is then still 0.\n"
-      "Components are faces that hang together through edges. The Euler characteristic v - e + f leaves "
+      "Components are edge-connected faces. The Euler characteristic v - e + f leaves "
       "isolated points aside;\nthe genus of several components is the sum of theirs. STL has no shared "
       "points: "
       "equal corners are one.\n\n"
