@@ -17,7 +17,7 @@ struct ConvertOptions {
   bool ascii = false;
 };
 
-/// The option given that judges or mends faces; empty for none.
+/// The option given that judges or repairs faces; empty for none.
 std::string judging_option(const ConsolidateOptions& options) {
   if (options.strict) return "--strict";
   if (!options.keep_isolated_points) return "--drop-isolated";
@@ -30,7 +30,7 @@ Result<void> weld_cloud(Job& job, const WeldOptions& options, IndexedFaceSet& me
   job.json()["report"] = {{"welded_points", welded.merged_points},
                           {"largest_weld_move", welded.largest_move}};
   if (welded.merged_points > 0)
-    job.row("mended", count_of(welded.merged_points, "point") + " welded to others");
+    job.row("repaired", count_of(welded.merged_points, "point") + " welded to others");
   return {};
 }
 
@@ -41,7 +41,7 @@ Result<void> run(Job& job, const ConvertOptions& options) {
   const std::string judging = judging_option(consolidation);
   if (options.as_is && (consolidation.weld || !judging.empty()))
     return fail(ErrorCode::kUsage, (judging.empty() ? "--weld" : judging) +
-                                       " cannot act with --as-is, which judges and mends nothing");
+                                       " cannot act with --as-is, which judges and repairs nothing");
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
   if (mesh.face_count() == 0) {
     if (!judging.empty())
@@ -57,7 +57,7 @@ Result<void> run(Job& job, const ConvertOptions& options) {
     VKMESH_TRY(Triangulated cut, job.timed("compute", [&] { return triangulate(mesh); }));
     mesh = std::move(cut.mesh);
     if (!options.as_is) {
-      // Where no diagonal was free, the triangles are mended as any input is.
+      // Where no diagonal was free, the triangles are repaired as any input is.
       VKMESH_TRY(const HalfEdgeMesh triangles, job.consolidate_again(mesh));
     }
     job.row("triangulated", count_of(before, "face") + " into " + count_of(mesh.face_count(), "triangle"));

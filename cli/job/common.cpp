@@ -254,7 +254,7 @@ Result<HalfEdgeMesh> Job::consolidate_triangles(IndexedFaceSet& mesh) {
     auto triangles = to_half_edge_mesh(cut.mesh);
     if (triangles) return triangles;
     mesh = std::move(cut.mesh);
-    note("the polygons share diagonals, so that they were cut into triangles and those mended");
+    note("the polygons share diagonals, so that they were cut into triangles and those repaired");
     return consolidate_again(mesh);
   });
 }
@@ -270,7 +270,7 @@ Result<HalfEdgeMesh> Job::consolidate_again(IndexedFaceSet& triangles) {
     result.error().message = "cut into triangles, the polygons are " + result.error().message;
     return tl::unexpected<Error>(std::move(result.error()));
   }
-  for (std::string& sentence : result->report.repairs()) row("mended", "triangles: " + sentence);
+  for (std::string& sentence : result->report.repairs()) row("repaired", "triangles: " + sentence);
   triangles = std::move(result->face_set);
   return std::move(result->mesh);
 }

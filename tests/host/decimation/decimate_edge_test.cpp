@@ -35,8 +35,8 @@
 namespace vkmesh {
 namespace {
 
-using test::half_edges, test::run, test::ways;
 using test::cross, test::dot;
+using test::half_edges, test::run, test::ways;
 
 /// Does a history over again on triangles in a list, and judges each step: no half-edges, no quadrics.
 class Replay {
