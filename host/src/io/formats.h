@@ -15,6 +15,7 @@
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 
 #include "io/bytes.h"
@@ -32,12 +33,10 @@ class Positions {
     const DVec3 moved = exact - offset_;
     const Vec3 rounded(moved);
     const DVec3 error = DVec3(rounded) - moved;
-    for (int axis = 0; axis < 3; ++axis) {
-      // Comparisons that not-a-number fails: it counts for nothing.
-      if (exact[axis] < low_[axis]) low_[axis] = exact[axis];
-      if (exact[axis] > high_[axis]) high_[axis] = exact[axis];
+    // Here and in bounds a coordinate that is not a number counts for nothing.
+    bounds_.add(exact);
+    for (int axis = 0; axis < 3; ++axis)
       if (std::abs(error[axis]) > error_) error_ = std::abs(error[axis]);
-    }
     return rounded;
   }
   void add(const Positions& other);
@@ -52,7 +51,7 @@ class Positions {
   [[nodiscard]] double size() const;
 
   DVec3 offset_;
-  DVec3 low_{HUGE_VAL}, high_{-HUGE_VAL};
+  DBounds bounds_;
   double error_ = 0;
 };
 

@@ -95,15 +95,12 @@ bool to_canonical_color(Channel& channel) {
 }
 
 void Positions::add(const Positions& other) {
-  for (int axis = 0; axis < 3; ++axis) {
-    low_[axis] = std::min(low_[axis], other.low_[axis]);
-    high_[axis] = std::max(high_[axis], other.high_[axis]);
-  }
+  bounds_ += other.bounds_;
   error_ = std::max(error_, other.error_);
 }
 
 double Positions::size() const {
-  const DVec3 extent = high_ - low_;
+  const DVec3 extent = bounds_.extent();
   return std::hypot(extent.x, extent.y, extent.z);
 }
 
@@ -114,7 +111,7 @@ DVec3 Positions::better_offset() const {
   if (!(size > 0 && size < HUGE_VAL) || error_ <= std::ldexp(size, -21)) return offset;
   const double grid = std::ldexp(1.0, std::ilogb(size) + 1);
   for (int axis = 0; axis < 3; ++axis) {
-    const double middle = low_[axis] + (high_[axis] - low_[axis]) / 2;
+    const double middle = bounds_.low[axis] + (bounds_.high[axis] - bounds_.low[axis]) / 2;
     if (std::abs(middle) > 4 * size) offset[axis] = std::round(middle / grid) * grid;
   }
   return offset;

@@ -10,7 +10,7 @@
 namespace vkmesh {
 
 /// An axis-aligned bounding box of points of type Vec3 or DVec3. Empty, with `low` above `high`, until a
-/// point is added.
+/// point is added. A coordinate that is not a number counts for nothing.
 template <class Point>
 struct BasicBounds {
   using Scalar = typename Point::value_type;

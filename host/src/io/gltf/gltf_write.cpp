@@ -18,6 +18,8 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include <vkmesh/math/bounds.h>
+
 #include "base/distinct_rows.h"
 #include "io/formats.h"
 #include "io/gltf/gltf.h"
@@ -297,12 +299,9 @@ class GltfWriter {
     const int index = put_vertices<float>("POSITION", 3, false, [&](std::size_t v, unsigned k) {
       return mesh_.points[vertex_point_[v]][static_cast<int>(k)];
     });
-    Vec3 low = mesh_.points[vertex_point_[0]], high = low;
-    for (const std::uint32_t point : vertex_point_)
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], mesh_.points[point][axis]);
-        high[axis] = std::max(high[axis], mesh_.points[point][axis]);
-      }
+    Bounds bounds;
+    for (const std::uint32_t point : vertex_point_) bounds.add(mesh_.points[point]);
+    const auto& [low, high] = bounds;
     tinygltf::Accessor& a = model_.accessors[static_cast<std::size_t>(index)];
     a.minValues = {low.x, low.y, low.z};
     a.maxValues = {high.x, high.y, high.z};
