@@ -49,7 +49,7 @@ VKMESH_CLONES void built_in_angles(Arrays& a) {
     a.angles[i] = built_in_angle(a.vectors[i - 1], a.vectors[i]);
 }
 VKMESH_CLONES void exact_exponentials(Arrays& a) {
-  for (std::size_t i = 0; i < a.vectors.size(); ++i) a.angles[i] = exponential(a.vectors[i].x);
+  for (std::size_t i = 0; i < a.vectors.size(); ++i) a.angles[i] = exact::exponential(a.vectors[i].x);
 }
 VKMESH_CLONES void built_in_exponentials(Arrays& a) {
   for (std::size_t i = 0; i < a.vectors.size(); ++i) a.angles[i] = std::exp(a.vectors[i].x);

@@ -56,10 +56,10 @@ std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t
   const Vec3 area = area_vector(a, b, c), unit = unit_vector(a);
   const float twice_area = vector_length(area), product = corner_product(a, b, c);
   return {zero_below(a.x, y),
-          reciprocal(x),
-          reciprocal_root(x),
-          root(y),
-          first_quadrant_angle(y, x),
+          exact::reciprocal(x),
+          exact::reciprocal_root(x),
+          exact::root(y),
+          exact::first_quadrant_angle(y, x),
           squared_length(b),
           area.x,
           area.y,
@@ -69,14 +69,14 @@ std::array<float, VKMESH_CANARY_RESULTS> expected(const float* in, std::uint32_t
           unit.z,
           angle_between(unit, unit_vector(b)),
           c.x + c.y * (b.x - c.x),
-          reciprocal(static_cast<float>(i + 1)),
+          exact::reciprocal(static_cast<float>(i + 1)),
           static_cast<float>(i * VKMESH_CANARY_UINT_STEP),
-          arccosine(unit.x),
-          exponential(a.y),
+          exact::arccosine(unit.x),
+          exact::exponential(a.y),
           vector_length(b),
           cotangent(product, twice_area),
           corner_angle(product, twice_area),
-          cube_root(y),
+          exact::cube_root(y),
           dihedral_angle(unit, unit_vector(b), c)};
 }
 

@@ -100,8 +100,8 @@ Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh, Ne
         .read(&P::normals, nearby.normals)
         .write(&P::target, target)
         .set(&P::spatial, nearby.options.spatial)
-        .set(&P::per_spatial, reciprocal(nearby.options.spatial))
-        .set(&P::spatial_over_influence, nearby.options.spatial * reciprocal(nearby.options.influence))
+        .set(&P::per_spatial, exact::reciprocal(nearby.options.spatial))
+        .set(&P::spatial_over_influence, nearby.options.spatial * exact::reciprocal(nearby.options.influence))
         .record();
   };
   VKMESH_CHECK(sum(shaders::bilateral_mollify, nearby.near, nearby.mollified));

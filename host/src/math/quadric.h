@@ -29,7 +29,7 @@ struct HostArithmetic {
 /// computed.
 struct DeviceArithmetic {
   static constexpr float kLeastPivot = VKMESH_FLAT_LEAST;
-  static float reciprocal(float x) { return vkmesh::reciprocal(x); }
+  static float reciprocal(float x) { return exact::reciprocal(x); }
   static float entry(float x) { return zero_below(x, VKMESH_TINY_QUADRIC); }
   static float direction(float x) { return zero_below(x, VKMESH_TINY_DIRECTION); }
   static float product(float x) { return zero_below(x, VKMESH_TINY_COORDINATE); }

@@ -44,7 +44,7 @@ VKMESH_CLONES void mollify(const NearFaces& near, std::span<Vec3, kBilateralLane
           zero_below(Vec3(c.x - p.x[i], c.y - p.y[i], c.z - p.z[i]) * per_spatial, VKMESH_TINY_DIRECTION);
       const float squared = squared_length(to);
       // Half of (|to| / ½)².
-      const float f = exponential(squared < 1.0f ? -2.0f * squared : -2.0f);
+      const float f = exact::exponential(squared < 1.0f ? -2.0f * squared : -2.0f);
       const float weight = squared < 1.0f ? zero_below(area * f, VKMESH_TINY_GAUSSIAN) : 0.0f;
       sum.x[i] += weight * to.x;
       sum.y[i] += weight * to.y;
@@ -53,7 +53,7 @@ VKMESH_CLONES void mollify(const NearFaces& near, std::span<Vec3, kBilateralLane
     }
   }
   for (std::size_t i = 0; i < kBilateralLanes; ++i) {
-    const float scale = reciprocal(total[i]);
+    const float scale = exact::reciprocal(total[i]);
     const Vec3 move = zero_below(Vec3(sum.x[i], sum.y[i], sum.z[i]) * scale, VKMESH_TINY_DIRECTION) * spatial;
     points[i] = zero_below(points[i] + move, VKMESH_TINY_COORDINATE);
   }
@@ -79,7 +79,7 @@ VKMESH_CLONES void move_to_predictions(const NearFaces& near, std::span<Vec3, kB
       const float held = std::fabs(across) < VKMESH_BILATERAL_FAR ? across : VKMESH_BILATERAL_FAR;
       // The spatial Gaussian ends at twice its width.
       const bool counts = squared < 4.0f;
-      const float f = exponential(counts ? -0.5f * (squared + held * held) : -4.0f);
+      const float f = exact::exponential(counts ? -0.5f * (squared + held * held) : -4.0f);
       const float weight = counts ? zero_below(area * f, VKMESH_TINY_GAUSSIAN) : 0.0f;
       const float along = zero_below(weight * height, VKMESH_TINY_GAUSSIAN);
       sum.x[i] += along * n.x;
@@ -89,7 +89,7 @@ VKMESH_CLONES void move_to_predictions(const NearFaces& near, std::span<Vec3, kB
     }
   }
   for (std::size_t i = 0; i < kBilateralLanes; ++i) {
-    const float scale = reciprocal(total[i]);
+    const float scale = exact::reciprocal(total[i]);
     const Vec3 move =
         zero_below(Vec3(sum.x[i], sum.y[i], sum.z[i]) * scale, VKMESH_TINY_DIRECTION) * widths.spatial;
     points[i] = zero_below(points[i] + move, VKMESH_TINY_COORDINATE);

@@ -38,7 +38,7 @@ Result<BilateralGrid> bilateral_grid(const HalfEdgeMesh& mesh, std::span<const V
                   "the mesh is more than 2^20 times as wide as the spatial width of the smoothing");
 
   std::vector<Vec3> centroids(mesh.face_count());
-  const float third = reciprocal(3.0f);
+  const float third = exact::reciprocal(3.0f);
   parallel_ranges(centroids.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const Vec3 a = p[corners[3 * f]], b = p[corners[3 * f + 1]], c = p[corners[3 * f + 2]];
@@ -47,7 +47,7 @@ Result<BilateralGrid> bilateral_grid(const HalfEdgeMesh& mesh, std::span<const V
   });
   // A centroid may lie below the smallest vertex by a rounding.
   for (const Vec3& c : centroids) bounds.add(c);
-  const float cells_per_unit = 0.998f * reciprocal(options.spatial);
+  const float cells_per_unit = 0.998f * exact::reciprocal(options.spatial);
   return BilateralGrid{PointGrid(centroids, bounds.low, cells_per_unit),
                        PointGrid(used_positions, bounds.low, cells_per_unit), std::move(used),
                        std::move(used_positions), std::move(centroids)};

@@ -85,7 +85,7 @@ Result<std::vector<Vec3>> bilateral_smoothing(const HalfEdgeMesh& mesh, std::spa
     if (mesh.face_count() == 0) return result;
 
     VKMESH_TRY(const detail::BilateralGrid grid, detail::bilateral_grid(mesh, p, options));
-    const float per_unit = reciprocal(options.spatial);
+    const float per_unit = exact::reciprocal(options.spatial);
     const std::vector<Vec3> areas = areas_of(mesh.origins(), p);
     NearFaces ordered;
     for (std::size_t i = 0; i < mesh.face_count(); ++i) {
@@ -112,7 +112,7 @@ Result<std::vector<Vec3>> bilateral_smoothing(const HalfEdgeMesh& mesh, std::spa
     for (std::size_t i = 0; i < mesh.face_count(); ++i) ordered.set_normal(i, normals[grid.faces.index(i)]);
 
     const detail::BilateralWidths widths{options.spatial, per_unit,
-                                         options.spatial * reciprocal(options.influence)};
+                                         options.spatial * exact::reciprocal(options.influence)};
     VKMESH_CHECK(for_each_cell(grid, 2, ordered, 4.04f * (radius * radius), progress, 0.25, 1.0,
                                [&](const NearFaces& near, std::size_t begin, std::size_t end) {
                                  std::array<Vec3, kBilateralLanes> at{};

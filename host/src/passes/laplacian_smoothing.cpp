@@ -69,8 +69,9 @@ void uniform_steps(const RingGroup& group, bool ends_only, float factor, const V
     sums[i] = sum;
     here[i] = Four::of(source + group.vertices[i]);
   }
-  steps_towards(here[0].at, sums[0].at, reciprocal(ends_only ? 2.0f : static_cast<float>(group.valence)),
-                factor, 4 * count, there[0].at);
+  steps_towards(here[0].at, sums[0].at,
+                exact::reciprocal(ends_only ? 2.0f : static_cast<float>(group.valence)), factor, 4 * count,
+                there[0].at);
   for (std::size_t i = 0; i < count; ++i)
     target[group.vertices[i] - first] = {there[i].at[0], there[i].at[1], there[i].at[2]};
 }
@@ -109,7 +110,7 @@ VKMESH_CLONES void add(Weighted& out, const RingPoints& q, const Cotangents& bef
 VKMESH_CLONES void steps_towards(RingPoints& here, const Weighted& mean, float factor, std::size_t count) {
   RingPoints result;
   for (std::size_t i = 0; i < count; ++i) {
-    const float each = reciprocal(mean.total[i]);
+    const float each = exact::reciprocal(mean.total[i]);
     const bool stays = mean.total[i] == 0.0f;
     const auto step = [&](float from, float sum) {
       const float there = step_towards(from, sum, each, factor);

@@ -30,15 +30,16 @@ float factor_of(const RawMeasures& before, const RawMeasures& after) {
                      ratio < VKMESH_VOLUME_RATIO_BOUND;
   const std::int32_t larger = exponent(before) - exponent(after);
   const bool near = larger >= -10 && larger <= 10;
-  return alike && near ? cube_root(ratio) * detail::from_bits(static_cast<std::uint32_t>(127 + larger) << 23)
-                       : 1.0f;
+  return alike && near
+             ? exact::cube_root(ratio) * detail::from_bits(static_cast<std::uint32_t>(127 + larger) << 23)
+             : 1.0f;
 }
 
 Scaling scaling_of(const RawMeasures& before, const RawMeasures& after) {
   const detail::UnitFrame frame =
       detail::unit_frame_of({{after[0], after[1], after[2]}, {after[3], after[4], after[5]}});
-  const Vec3 middle =
-      zero_below(Vec3(after[7], after[8], after[9]) * reciprocal(3.0f * after[6]), VKMESH_TINY_DIRECTION);
+  const Vec3 middle = zero_below(Vec3(after[7], after[8], after[9]) * exact::reciprocal(3.0f * after[6]),
+                                 VKMESH_TINY_DIRECTION);
   return {frame.centre + zero_below(middle * frame.inverse_scale, VKMESH_TINY_COORDINATE),
           factor_of(before, after)};
 }

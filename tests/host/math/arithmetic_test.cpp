@@ -40,7 +40,7 @@ WorstErrors worst_errors(std::uint32_t stride) {
   const long double smallest = std::numeric_limits<float>::min(), largest = std::numeric_limits<float>::max();
   for (std::uint64_t bits = 0; bits <= 0xffffffffu; bits += stride) {
     const float x = std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-    const float angle = arccosine(x), power = exponential(x);
+    const float angle = exact::arccosine(x), power = exact::exponential(x);
     worst.undefined += !(angle >= 0.0f && angle <= 3.1415927f && power >= 0.0f && power <= largest);
     if (std::isnan(x)) continue;
     const long double held = std::clamp(static_cast<long double>(x), -1.0L, 1.0L);
@@ -78,7 +78,7 @@ TEST_CASE("arccosine and exponential on every float", "[.long]") {
 double worst_cube_root(float low, float high, std::uint32_t stride) {
   double worst = 0;
   sweep(low, high, stride, [&](float x) {
-    worst = std::max(worst, ulps(cube_root(x), std::cbrt(static_cast<long double>(x))));
+    worst = std::max(worst, ulps(exact::cube_root(x), std::cbrt(static_cast<long double>(x))));
   });
   return worst;
 }
@@ -87,7 +87,8 @@ double worst_cube_root(float low, float high, std::uint32_t stride) {
 double worst_arctangent(float low, float high, std::uint32_t stride) {
   double worst = 0;
   sweep(low, high, stride, [&](float y) {
-    worst = std::max(worst, ulps(first_quadrant_angle(y, 1.0f), std::atan(static_cast<long double>(y))));
+    worst =
+        std::max(worst, ulps(exact::first_quadrant_angle(y, 1.0f), std::atan(static_cast<long double>(y))));
   });
   return worst;
 }
@@ -98,11 +99,11 @@ TEST_CASE("cube root within 0.51 ULP: a sixteenth of the mantissas, every expone
   INFO("worst " << worst << " and " << mantissas);
   CHECK(worst <= 0.51);
   CHECK(mantissas <= 0.51);
-  CHECK(cube_root(27.0f) == 3.0f);
-  CHECK(cube_root(0x1p-126f) == 0x1p-42f);
+  CHECK(exact::cube_root(27.0f) == 3.0f);
+  CHECK(exact::cube_root(0x1p-126f) == 0x1p-42f);
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float x : {0.0f, -0.0f, -8.0f, 0x1p-127f, infinity, std::numeric_limits<float>::quiet_NaN()})
-    CHECK(std::bit_cast<std::uint32_t>(cube_root(x)) == 0u);
+    CHECK(std::bit_cast<std::uint32_t>(exact::cube_root(x)) == 0u);
 }
 
 TEST_CASE("cube root on every normal float, arctangent on every float of its range", "[.long]") {
@@ -120,11 +121,11 @@ TEST_CASE("reciprocal and the roots on every normal float", "[.long]") {
     const long double exact = std::sqrt(static_cast<long double>(x));
     // Where 1 / x is subnormal the answer is 0.
     if (x <= 0x1p126f)
-      worst_reciprocal = std::max(worst_reciprocal, ulps(reciprocal(x), 1.0L / x));
+      worst_reciprocal = std::max(worst_reciprocal, ulps(exact::reciprocal(x), 1.0L / x));
     else
-      wrong += reciprocal(x) != 0.0f;
-    worst_reciprocal_root = std::max(worst_reciprocal_root, ulps(reciprocal_root(x), 1.0L / exact));
-    wrong += root(x) != static_cast<float>(exact);
+      wrong += exact::reciprocal(x) != 0.0f;
+    worst_reciprocal_root = std::max(worst_reciprocal_root, ulps(exact::reciprocal_root(x), 1.0L / exact));
+    wrong += exact::root(x) != static_cast<float>(exact);
   });
   INFO("reciprocal " << worst_reciprocal << " ULP, reciprocal root " << worst_reciprocal_root << " ULP");
   CHECK(worst_reciprocal <= 0.5001);
@@ -136,18 +137,18 @@ TEST_CASE("arccosine and exponential at their ends") {
   const float infinity = std::numeric_limits<float>::infinity(),
               nan = std::numeric_limits<float>::quiet_NaN();
   for (const float x : {1.0f, 1.5f, infinity, nan}) {
-    CHECK(arccosine(x) == 0.0f);
-    CHECK(arccosine(-x) == 3.14159265f);
+    CHECK(exact::arccosine(x) == 0.0f);
+    CHECK(exact::arccosine(-x) == 3.14159265f);
   }
-  CHECK(exponential(-infinity) == 0.0f);
-  CHECK(exponential(-nan) == 0.0f);
-  CHECK(arccosine(0.0f) == 1.57079633f);
-  CHECK(arccosine(-0x1p-149f) == 1.57079633f);
-  CHECK(exponential(0.0f) == 1.0f);
-  CHECK(exponential(0x1p-149f) == 1.0f);
-  CHECK(exponential(infinity) == std::numeric_limits<float>::max());
-  CHECK(exponential(nan) == std::numeric_limits<float>::max());
-  CHECK(exponential(-87.4f) == 0.0f);
+  CHECK(exact::exponential(-infinity) == 0.0f);
+  CHECK(exact::exponential(-nan) == 0.0f);
+  CHECK(exact::arccosine(0.0f) == 1.57079633f);
+  CHECK(exact::arccosine(-0x1p-149f) == 1.57079633f);
+  CHECK(exact::exponential(0.0f) == 1.0f);
+  CHECK(exact::exponential(0x1p-149f) == 1.0f);
+  CHECK(exact::exponential(infinity) == std::numeric_limits<float>::max());
+  CHECK(exact::exponential(nan) == std::numeric_limits<float>::max());
+  CHECK(exact::exponential(-87.4f) == 0.0f);
 }
 
 TEST_CASE(
@@ -159,10 +160,10 @@ TEST_CASE(
   std::size_t wrong = 0;
   const auto check = [&](float x) {
     const long double exact = std::sqrt(static_cast<long double>(x));
-    worst_reciprocal = std::max(worst_reciprocal, ulps(reciprocal(x), 1.0L / x));
-    worst_reciprocal_root = std::max(worst_reciprocal_root, ulps(reciprocal_root(x), 1.0L / exact));
-    wrong += root(x) != static_cast<float>(exact);
-    wrong += reciprocal(-x) != -reciprocal(x);
+    worst_reciprocal = std::max(worst_reciprocal, ulps(exact::reciprocal(x), 1.0L / x));
+    worst_reciprocal_root = std::max(worst_reciprocal_root, ulps(exact::reciprocal_root(x), 1.0L / exact));
+    wrong += exact::root(x) != static_cast<float>(exact);
+    wrong += exact::reciprocal(-x) != -exact::reciprocal(x);
   };
   sweep(1.0f, 3.9999998f, test::kSanitized ? 17 : 1, check);
   sweep(0x1p-126f, 0x1p126f, 4093, check);
@@ -175,29 +176,29 @@ TEST_CASE("reciprocal and the roots are zero where they are not defined") {
   const float infinity = std::numeric_limits<float>::infinity(),
               nan = std::numeric_limits<float>::quiet_NaN();
   for (const float x : {0.0f, -0.0f, 0x1p-127f, -0x1p-149f, infinity, -infinity, nan}) {
-    CHECK(std::bit_cast<std::uint32_t>(reciprocal(x)) == 0u);
-    CHECK(std::bit_cast<std::uint32_t>(reciprocal_root(x)) == 0u);
-    CHECK(std::bit_cast<std::uint32_t>(root(x)) == 0u);
+    CHECK(std::bit_cast<std::uint32_t>(exact::reciprocal(x)) == 0u);
+    CHECK(std::bit_cast<std::uint32_t>(exact::reciprocal_root(x)) == 0u);
+    CHECK(std::bit_cast<std::uint32_t>(exact::root(x)) == 0u);
   }
-  CHECK(std::bit_cast<std::uint32_t>(root(-2.0f)) == 0u);
-  CHECK(std::bit_cast<std::uint32_t>(reciprocal_root(-2.0f)) == 0u);
-  CHECK(reciprocal(0x1p126f) == 0x1p-126f);
-  CHECK(reciprocal(std::nextafter(0x1p126f, infinity)) == 0.0f);
-  CHECK(reciprocal(std::numeric_limits<float>::max()) == 0.0f);
-  CHECK(root(std::numeric_limits<float>::max()) == 0x1.fffffep63f);
+  CHECK(std::bit_cast<std::uint32_t>(exact::root(-2.0f)) == 0u);
+  CHECK(std::bit_cast<std::uint32_t>(exact::reciprocal_root(-2.0f)) == 0u);
+  CHECK(exact::reciprocal(0x1p126f) == 0x1p-126f);
+  CHECK(exact::reciprocal(std::nextafter(0x1p126f, infinity)) == 0.0f);
+  CHECK(exact::reciprocal(std::numeric_limits<float>::max()) == 0.0f);
+  CHECK(exact::root(std::numeric_limits<float>::max()) == 0x1.fffffep63f);
 }
 
 TEST_CASE("first-quadrant angle is within 4 ULP") {
   double worst = 0;
   sweep(0x1p-61f, 0x1p60f, 1009, [&](float y) {
     for (const float x : {1.0f, 0.7f, 1.9999999f, 0x1p-61f, 0x1p60f})
-      worst = std::max(worst, ulps(first_quadrant_angle(y, x),
+      worst = std::max(worst, ulps(exact::first_quadrant_angle(y, x),
                                    std::atan2(static_cast<long double>(y), static_cast<long double>(x))));
   });
   INFO("worst " << worst);
   CHECK(worst <= 4.0);
-  CHECK(first_quadrant_angle(0.0f, 1.0f) == 0.0f);
-  CHECK(ulps(first_quadrant_angle(1.0f, 0.0f), std::acos(0.0L)) <= 0.5);
+  CHECK(exact::first_quadrant_angle(0.0f, 1.0f) == 0.0f);
+  CHECK(ulps(exact::first_quadrant_angle(1.0f, 0.0f), std::acos(0.0L)) <= 0.5);
 }
 
 TEST_CASE("unit vectors have length 1 and the direction of their argument, from tiny to huge") {

@@ -58,6 +58,9 @@ namespace detail {
 
 }  // namespace detail
 
+/// Scalar functions that <cmath> and GLSL leave inexact.
+namespace exact {
+
 /// 1 / x within 0.5001 ULP, by Newton's iteration from an integer seed and one step with an exact residual.
 /// 0 where x is zero, subnormal or not finite, and where 1 / x would be subnormal.
 [[nodiscard]] inline float reciprocal(float x) {
@@ -176,6 +179,8 @@ namespace detail {
   return in_range ? detail::from_bits(detail::bits(y) + (power << 23)) : (negative ? 0.0f : VKMESH_LARGEST);
 }
 
+}  // namespace exact
+
 /// |v|² for components in {0} ∪ [2^-61, 2^50].
 [[nodiscard]] inline float squared_length(Vec3 v) {
   return (v.x * v.x + v.y * v.y) + v.z * v.z;
@@ -198,7 +203,7 @@ namespace detail {
   // A power of two brings the largest component into [1, 4): squares then neither overflow nor vanish.
   const float scale = std::bit_cast<float>(std::max(0x7f000000u - (largest & 0x7f800000u), 0x00800000u));
   const Vec3 w = zero_below(v * scale, VKMESH_TINY_DIRECTION);
-  const float r = reciprocal_root(squared_length(w));
+  const float r = exact::reciprocal_root(squared_length(w));
   // No branch, so that a loop of these fills vector registers.
   return {defined ? w.x * r : 0.0f, defined ? w.y * r : 0.0f, defined ? w.z * r : 0.0f};
 }
@@ -209,9 +214,9 @@ namespace detail {
   const float length_a = squared_length(a), length_b = squared_length(b);
   // No branch, so that a loop of these fills vector registers.
   const bool defined = (length_a != 0.0f) & (length_b != 0.0f);
-  const float apart = root(squared_length(zero_below(a - b, VKMESH_TINY_LENGTH)));
-  const float along = root(squared_length(zero_below(a + b, VKMESH_TINY_LENGTH)));
-  return defined ? 2.0f * first_quadrant_angle(apart, along) : 0.0f;
+  const float apart = exact::root(squared_length(zero_below(a - b, VKMESH_TINY_LENGTH)));
+  const float along = exact::root(squared_length(zero_below(a + b, VKMESH_TINY_LENGTH)));
+  return defined ? 2.0f * exact::first_quadrant_angle(apart, along) : 0.0f;
 }
 
 /// angle_between(left, right), the normals of the faces to the left and the right of an edge that runs along
@@ -233,7 +238,7 @@ namespace detail {
                detail::bits(v.z) & 0x7fffffffu);
   const float scale = detail::from_bits(std::max(0x7f000000u - (largest & 0x7f800000u), 0x00800000u));
   const Vec3 w = zero_below(v * scale, VKMESH_TINY_DIRECTION);
-  return root(squared_length(w)) * detail::from_bits(largest & 0x7f800000u);
+  return exact::root(squared_length(w)) * detail::from_bits(largest & 0x7f800000u);
 }
 
 /// (p1 − p0) · (p2 − p0), as area_vector() is the other product.
@@ -249,7 +254,7 @@ namespace detail {
   // Compared before the division, which could overflow.
   const float scaled = x * inverse_bound;
   const bool high = scaled >= y, low = -scaled >= y;
-  const float ratio = zero_below((high || low ? 0.0f : x) * reciprocal(y), VKMESH_TINY_COORDINATE);
+  const float ratio = zero_below((high || low ? 0.0f : x) * exact::reciprocal(y), VKMESH_TINY_COORDINATE);
   return y == 0.0f ? 0.0f : (high ? bound : (low ? -bound : ratio));
 }
 
@@ -269,7 +274,7 @@ namespace detail {
   const float scale = detail::from_bits(0x7f000000u - (largest & 0x7f800000u));
   const float x = zero_below(product * scale, VKMESH_TINY_LENGTH);
   const float y = zero_below(twice_area * scale, VKMESH_TINY_LENGTH);
-  const float angle = first_quadrant_angle(y, std::fabs(x));
+  const float angle = exact::first_quadrant_angle(y, std::fabs(x));
   return x < 0.0f ? (2.0f * VKMESH_HALF_PI_HIGH - angle) + 2.0f * VKMESH_HALF_PI_LOW : angle;
 }
 
