@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -73,7 +72,6 @@ Result<void> run(Job& job, const CompareOptions& options) {
   job.row("Hausdorff", options.tolerance > 0 ? "between " + with_share(both.hausdorff_low) + " and " +
                                                    with_share(both.hausdorff_high)
                                              : "at least " + with_share(both.maximum));
-  constexpr double kDegrees = 180 / std::numbers::pi;
   job.row("normals", "differ by " + brief(both.mean_normal_angle * kDegrees) + " degrees on average, " +
                          brief(both.maximum_normal_angle * kDegrees) + " at most");
   job.row("one way", "first to second: mean " + brief(distance.a_to_b.mean) + ", largest " +

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <string>
 
 #include <vkmesh/analysis/creases.h>
@@ -12,8 +11,6 @@
 
 namespace vkmesh::cli {
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct Degrees {
   double sharp = 40, soft = 20;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 
 #include "commands.h"
 #include "passes/backend.h"
@@ -46,7 +45,6 @@ Result<void> run(Job& job, const CurvatureOptions& options) {
   if (values.empty()) smallest = largest = 0;
   const double mean = values.empty() ? 0 : sum / static_cast<double>(values.size());
   const bool angles = options.kind == "dihedral";
-  constexpr double kDegrees = 180 / std::numbers::pi;
   const std::string unit = angles ? "radians" : options.kind == "mean" ? "1 / length" : "1 / length^2";
   job.json()["result"] = {
       {"kind", options.kind}, {"unit", unit}, {"mean", mean}, {"smallest", smallest}, {"largest", largest}};

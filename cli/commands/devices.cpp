@@ -11,7 +11,7 @@ namespace {
 
 #ifdef VKMESH_HAS_VULKAN
 
-Result<void> run(Job& job) {
+Result<void> print_devices(Job& job) {
   Json& listed = job.json()["result"]["devices"];
   listed = Json::array();
   const auto devices = probe_devices(context_options("auto"));
@@ -38,7 +38,7 @@ Result<void> run(Job& job) {
 
 #else
 
-Result<void> run(Job& job) {
+Result<void> print_devices(Job& job) {
   job.json()["result"]["devices"] = Json::array();
   job.note("this program was built without Vulkan: it knows no device but cpu");
   job.row("cpu", "the host itself; always there");
@@ -61,7 +61,7 @@ void add_devices(CLI::App& app, Program& program) {
   add_common_options(*command, program.options, false, false);
   command->callback([&program] {
     program.command = "devices";
-    program.action = run;
+    program.action = print_devices;
   });
 }
 

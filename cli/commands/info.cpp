@@ -106,7 +106,7 @@ std::string listed(const std::vector<Channel>& channels, const char* of) {
   return text.empty() ? text : text + " of " + of;
 }
 
-Result<void> run(Job& job) {
+Result<void> print_info(Job& job) {
   use_host(job);
   VKMESH_TRY(const IndexedFaceSet mesh, job.read());
   VKMESH_TRY(const SurfaceTopology topology,
@@ -220,7 +220,7 @@ void add_info(CLI::App& app, Program& program) {
   add_common_options(*command, program.options, true, false);
   command->callback([&program] {
     program.command = "info";
-    program.action = run;
+    program.action = print_info;
   });
 }
 

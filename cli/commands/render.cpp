@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include <vkmesh/analysis/surface_distance.h>
@@ -247,7 +246,6 @@ Result<void> measure(Subject& subject, const IndexedFaceSet& polygons, const Ren
   if (angular) {
     VKMESH_TRY(angles, signed_dihedral_angles(polygons, edges));
   }
-  constexpr double kDegrees = 180 / std::numbers::pi;
   if (color == "curvature") {
     VKMESH_TRY(subject.values, mean_curvatures(polygons, edges, angles));
     subject.legend.title = "mean curvature, 1 / length";

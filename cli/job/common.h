@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,9 @@
 namespace vkmesh::cli {
 
 using Json = nlohmann::ordered_json;
+
+/// Degrees in a radian.
+inline constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct CommonOptions {
   std::string input;
