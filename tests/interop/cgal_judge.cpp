@@ -2,6 +2,8 @@
 //   cgal_judge counts FILE POINTS FACES ...    reads each file as polygon soup; "-" stands for any count
 //   cgal_judge info FILE INFO ...              judges each file, and compares with the JSON of `vkmesh info
 //   FILE --json`
+//   cgal_judge distances FIRST SECOND COMPARED ...   measures how far the surfaces lie from each other, and
+//   compares with the JSON of `vkmesh compare FIRST SECOND --json`
 // Prints one line of totals; every disagreement goes to standard error and fails.
 #include <algorithm>
 #include <array>
@@ -10,13 +12,18 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
 
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
 #include <CGAL/IO/polygon_soup_io.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/distance.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
@@ -197,11 +204,90 @@ int compare_info(int count, char** arguments) {
   return bad;
 }
 
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<Mesh>>>;
+
+bool read_mesh(const std::string& file, Mesh& mesh) {
+  std::vector<Kernel::Point_3> points;
+  std::vector<std::vector<std::size_t>> polygons;
+  if (!CGAL::IO::read_polygon_soup(file, points, polygons)) return false;
+  // Coordinates as vkmesh keeps them.
+  for (Kernel::Point_3& p : points)
+    p = {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+  if (!pmp::is_polygon_soup_a_polygon_mesh(polygons)) return false;
+  pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh);
+  return CGAL::is_triangle_mesh(mesh);
+}
+
+struct Distances {
+  double sum = 0, squares = 0;
+};
+
+Distances sampled(const Mesh& from, const Mesh& to, std::size_t samples) {
+  Tree tree(faces(to).begin(), faces(to).end(), to);
+  tree.accelerate_distance_queries();
+  std::vector<double> areas;
+  for (const auto face : from.faces()) areas.push_back(pmp::face_area(face, from));
+  std::mt19937_64 random(7);
+  std::discrete_distribution<std::size_t> any(areas.begin(), areas.end());
+  std::uniform_real_distribution<double> share(0, 1);
+  Distances result;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const auto h = from.halfedge(Mesh::Face_index(static_cast<unsigned>(any(random))));
+    const Kernel::Point_3 &a = from.point(from.source(h)), &b = from.point(from.target(h)),
+                          &c = from.point(from.target(from.next(h)));
+    const double root = std::sqrt(share(random)), along = share(random);
+    const Kernel::Point_3 at = a + root * ((1 - along) * (b - a) + along * (c - a));
+    const double squared = tree.squared_distance(at);
+    result.sum += std::sqrt(squared);
+    result.squares += squared;
+  }
+  return result;
+}
+
+/// Returns how many disagree. Mean and root mean square over samples of its own, by area, to 1 %; the
+/// Hausdorff distance by CGAL's bounded search, to its bound.
+int compare_distances(int count, char** arguments) {
+  int bad = 0, pairs = 0;
+  for (int i = 2; i + 2 < count; i += 3) {
+    const std::string name = std::string(arguments[i]) + ", " + arguments[i + 1];
+    Mesh first, second;
+    const Json compared = Json::parse(std::ifstream(arguments[i + 2]), nullptr, false);
+    if (!read_mesh(arguments[i], first) || !read_mesh(arguments[i + 1], second) || !compared.is_object()) {
+      std::cerr << "CGAL: " << name << ": cannot be read\n";
+      ++bad;
+      continue;
+    }
+    constexpr std::size_t kSamples = 300000;
+    const Distances there = sampled(first, second, kSamples), back = sampled(second, first, kSamples);
+    // Two-sided, the means of both ways count alike.
+    const double mean = (there.sum + back.sum) / (2.0 * kSamples),
+                 rms = std::sqrt((there.squares + back.squares) / (2.0 * kSamples));
+    const Json& ours = compared["result"]["two_sided"];
+    const double low = ours["hausdorff_low"], high = ours["hausdorff_high"], error = high / 100;
+    const double hausdorff =
+        pmp::bounded_error_symmetric_Hausdorff_distance<CGAL::Sequential_tag>(first, second, error);
+    const auto check = [&](const char* what, bool agrees, double mine, double theirs) {
+      if (agrees) return;
+      std::cerr << "CGAL: " << name << ": " << what << " is " << theirs << ", vkmesh says " << mine << "\n";
+      ++bad;
+    };
+    check("the mean", std::abs(ours["mean"].get<double>() - mean) <= 0.01 * mean, ours["mean"], mean);
+    check("the root mean square", std::abs(ours["root_mean_square"].get<double>() - rms) <= 0.01 * rms,
+          ours["root_mean_square"], rms);
+    check("Hausdorff's distance", hausdorff >= low - error && hausdorff <= high + error, high, hausdorff);
+    ++pairs;
+  }
+  std::cout << pairs << " pairs of surfaces, mean and root mean square to 1 %, Hausdorff to its bound\n";
+  return pairs == 0 ? 1 : bad;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   const std::string mode = count > 1 ? arguments[1] : "";
-  if (mode != "counts" && mode != "info") return 2;
-  const int bad = mode == "info" ? compare_info(count, arguments) : compare_counts(count, arguments);
+  if (mode != "counts" && mode != "info" && mode != "distances") return 2;
+  const int bad = mode == "info"        ? compare_info(count, arguments)
+                  : mode == "distances" ? compare_distances(count, arguments)
+                                        : compare_counts(count, arguments);
   return bad > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -204,7 +204,7 @@ elif [ -x "$readers/cgal_judge" ]; then
 fi
 
 # ---- How far surfaces lie from each other
-if [ -x "$readers/cgal_distance" ] && [ -e data/cgal/meshes ]; then
+if [ -x "$readers/cgal_judge" ] && [ -e data/cgal/meshes ]; then
   arguments=()
   for name in elephant fandisk knot1; do
     "$vkmesh" convert "data/cgal/meshes/$name.off" "$work/$name-whole.off" --triangulate --quiet
@@ -212,7 +212,7 @@ if [ -x "$readers/cgal_distance" ] && [ -e data/cgal/meshes ]; then
     "$vkmesh" compare "$work/$name-whole.off" "$work/$name-tenth.off" --json >"$work/$name-compared.json"
     arguments+=("$work/$name-whole.off" "$work/$name-tenth.off" "$work/$name-compared.json")
   done
-  if totals=$(timeout 120 "$readers/cgal_distance" "${arguments[@]}" 2>"$work/err"); then
+  if totals=$(timeout 120 "$readers/cgal_judge" distances "${arguments[@]}" 2>"$work/err"); then
     echo "cgal: vkmesh compare agrees: $totals"
   else
     cat "$work/err" >&2
