@@ -291,6 +291,12 @@ void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed) {
   }
 }
 
+std::vector<IndexedFaceSet> noisy_shapes() {
+  std::vector<IndexedFaceSet> shapes = {icosphere(4), torus(40, 20), grid(20, 15), cylinder(10, 12), cube()};
+  for (std::size_t i = 0; i < shapes.size(); ++i) jitter(shapes[i], 0.02f, static_cast<std::uint32_t>(i));
+  return shapes;
+}
+
 HalfEdgeMesh half_edges(const IndexedFaceSet& mesh) {
   auto half_edges = to_half_edge_mesh(mesh);
   if (!half_edges) FAIL(half_edges.error().describe());

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -52,6 +53,9 @@ std::map<std::string, IndexedFaceSet> degenerate_shapes();
 /// Moves every coordinate by a pseudo-random amount of at most `amplitude`; the same seed gives the same
 /// mesh.
 void jitter(IndexedFaceSet& mesh, float amplitude, std::uint32_t seed);
+
+/// A sphere, a torus, a grid, a cylinder and a cube, each jittered by 0.02.
+std::vector<IndexedFaceSet> noisy_shapes();
 
 /// to_half_edge_mesh() of a mesh that is known to be manifold; fails the test otherwise.
 HalfEdgeMesh half_edges(const IndexedFaceSet& mesh);

@@ -24,5 +24,12 @@ inline DVec3 area_of(const IndexedFaceSet& mesh, std::size_t f) {
   const DVec3 p(mesh.points[c[0]]), q(mesh.points[c[1]]), r(mesh.points[c[2]]);
   return cross(q - p, r - p);
 }
+/// The angle of triangle f at its corner i.
+inline double angle_of(const IndexedFaceSet& mesh, std::size_t f, std::size_t i) {
+  const auto c = mesh.face(f);
+  const DVec3 p(mesh.points[c[i]]), a = DVec3(mesh.points[c[(i + 1) % 3]]) - p,
+                                    b = DVec3(mesh.points[c[(i + 2) % 3]]) - p;
+  return std::acos(dot(a, b) / (length(a) * length(b)));
+}
 
 }  // namespace vkmesh::test

@@ -1,4 +1,4 @@
-// Every pass on the device against its CPU reference, bit for bit. (tests/host/passes/passes_test.cpp checks
+// Every pass on the device against its CPU reference, bit for bit. (tests/host/passes/ checks
 // the reference.)
 #include <algorithm>
 #include <bit>
