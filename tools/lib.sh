@@ -26,6 +26,6 @@ build_preset() {
   done
   [ $# -gt 0 ] && { shift; targets=(--target "$@"); }
   logged "configure-$preset" cmake --preset "$preset" "${options[@]}"
-  logged "build-$preset" cmake --build --preset "$preset" "${targets[@]}"
+  logged "build-$preset" cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}"
   echo "Built the preset $preset in $((SECONDS - start)) s."
 }

@@ -1,5 +1,5 @@
-// Runs a fuzz target without a fuzzer: random_inputs COUNT gives it random bytes so many times, the same each
-// time.
+// Runs a fuzz target without a fuzzer: random_inputs COUNT [FIRST] gives it random bytes so many times, of
+// the seeds from FIRST on.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -10,12 +10,14 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 int main(int argc, char** argv) {
-  const long count = argc == 2 ? std::atol(argv[1]) : 0;
-  if (count <= 0) {
-    std::fprintf(stderr, "usage: %s COUNT\n", argv[0]);
+  const long count = argc >= 2 ? std::atol(argv[1]) : 0;
+  const long first = argc == 3 ? std::atol(argv[2]) : 0;
+  if (count <= 0 || first < 0 || argc > 3) {
+    std::fprintf(stderr, "usage: %s COUNT [FIRST]\n", argv[0]);
     return 2;
   }
-  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(count); ++seed) {
+  const auto end = static_cast<std::uint32_t>(first + count);
+  for (auto seed = static_cast<std::uint32_t>(first); seed < end; ++seed) {
     std::fprintf(stderr, "\rseed %u ", seed);  // the last one is what broke something
     std::mt19937 random(seed);
     std::vector<std::uint8_t> bytes(20 + random() % 500);
