@@ -12,7 +12,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/decimation/reason.h>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

@@ -26,9 +26,10 @@
 #include "decimation/legality/judge.h"
 #include "decimation/legality/local_change.h"
 #include "decimation/order/collapse_queues.h"
+#include "decimation/order/edge_tags.h"
 #include "decimation/order/pending_edges.h"
 #include "decimation/parallel/partition.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 
@@ -175,7 +176,8 @@ class EdgeCollapses {
   void count_blocked() {
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
-        if (!mesh_.alive(h) || !mesh_.parked(h) || (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
+        if (!mesh_.alive(h) || !mesh_.has_tag(h, kParked) ||
+            (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
           continue;
         // Rounding differs from one half of the edge to the other, and it was one of them that was refused.
         Reason why = judge_alone(h);
@@ -262,7 +264,7 @@ class EdgeCollapses {
     // Branchless: the conditions are unpredictable.
     std::size_t live = 0;
     std::array<EdgeBatch::Ends, Queue::kBatch> ends;
-    const std::uint32_t interface = share_->partition.is_bounded() ? 1u << CollapseMesh::kInterfaceShift : 0;
+    const std::uint32_t interface = share_->partition.is_bounded() ? tag_mask(kAtInterface) : 0;
     const CollapseMesh::Face* const faces = mesh_.faces();
     for (const std::uint32_t h : std::span(b.ids).first(b.queued)) {
       const CollapseMesh::Face& face = faces[h >> 2];
@@ -294,7 +296,7 @@ class EdgeCollapses {
   }
 
   [[nodiscard]] bool is_mine(std::uint32_t h) const {
-    return !share_->partition.is_bounded() || !mesh_.at_interface(h);
+    return !share_->partition.is_bounded() || !mesh_.has_tag(h, kAtInterface);
   }
   void enqueue_now(std::uint32_t h) {
     if (is_mine(h))
@@ -313,7 +315,7 @@ class EdgeCollapses {
     }
   }
   void put_back(std::uint32_t h) {
-    if (mesh_.queued(h)) enqueue_now(h);
+    if (mesh_.has_tag(h, kQueued)) enqueue_now(h);
   }
   void forget_touched() {
     for (auto* touched : {&before_, &touched_}) {
@@ -355,7 +357,7 @@ class EdgeCollapses {
   void attempt(const Pending& b, std::size_t i) {
     const Due& due = b.due[i];
     const std::uint32_t h = due.half_edge;
-    if (!mesh_.queued(h)) return;
+    if (!mesh_.has_tag(h, kQueued)) return;
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
     if (vertices_[p].has(VertexRecord::kTouched) || vertices_[q].has(VertexRecord::kTouched)) {
       share_->queue.insert_now(h);
@@ -368,8 +370,8 @@ class EdgeCollapses {
       collapse(due, p, q, rings);
     } else {
       ++share_->state.outcome.rejected[reason];
-      mesh_.clear_queued(h);
-      mesh_.set_parked(h);
+      mesh_.clear_tag(h, kQueued);
+      set_parked(mesh_, h);
       vertices_[p].source |= VertexRecord::kHasParked;
       vertices_[q].source |= VertexRecord::kHasParked;
     }
@@ -504,17 +506,17 @@ class EdgeCollapses {
   void erase_queued(std::uint32_t h) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t g = (h & ~3u) + i;
-      if (mesh_.queued(g)) share_->queue.erase(g);
+      if (mesh_.has_tag(g, kQueued)) share_->queue.erase(g);
     }
   }
 
   // Two edges have become one, of the half-edges g and t: one entry is to stand for it.
   void join(std::uint32_t g, std::uint32_t t) {
-    const std::uint32_t state = mesh_.make_one(g, t);
+    const WasQueued was = join_tags(mesh_, g, t);
     if constexpr (Queue::kExact)
-      if (state == CollapseMesh::kBothQueued) share_->queue.erase(t);
+      if (was == WasQueued::kBoth) share_->queue.erase(t);
     again_[again_count_] = g;
-    again_count_ += state == CollapseMesh::kNoneQueued ? 1 : 0;
+    again_count_ += was == WasQueued::kNone ? 1 : 0;
   }
 
   void put(std::uint32_t h, float cost) {
@@ -536,9 +538,9 @@ class EdgeCollapses {
     const std::uint32_t t = mesh_.twin(h);
     moved_.clear();
     for (std::uint32_t out = mesh_.around_vertex(h); out != h; out = mesh_.around_vertex(out)) {
-      const std::uint32_t in = mesh_.twin(out), id = mesh_.queued(out) ? out : in;
+      const std::uint32_t in = mesh_.twin(out), id = mesh_.has_tag(out, kQueued) ? out : in;
       const bool stays = ((id ^ h) >> 2 != 0) & ((id ^ t) >> 2 != 0);  // its face does
-      if (mesh_.queued(id) && stays) moved_.push_back({id, mesh_.origin(in), 0, false});
+      if (mesh_.has_tag(id, kQueued) && stays) moved_.push_back({id, mesh_.origin(in), 0, false});
     }
   }
 
@@ -594,7 +596,8 @@ class EdgeCollapses {
       std::size_t count = 0;
       for (; edges > 0 && count < ids.size(); --edges) {
         const std::uint32_t t = mesh_.twin(h);
-        if (mesh_.queued(h) || mesh_.queued(t)) ids[count++] = mesh_.queued(h) ? h : t;
+        if (mesh_.has_tag(h, kQueued) || mesh_.has_tag(t, kQueued))
+          ids[count++] = mesh_.has_tag(h, kQueued) ? h : t;
         h = mesh_.around_vertex(h);
       }
       evaluate(std::span(ids).first(count));
@@ -640,9 +643,9 @@ class EdgeCollapses {
     const std::uint32_t start = vertices_[v].leading;
     std::uint32_t h = start;
     do {
-      if (mesh_.parked(h)) {
-        mesh_.clear_parked(h);
-        mesh_.set_queued(h);
+      if (mesh_.has_tag(h, kParked)) {
+        clear_parked(mesh_, h);
+        mesh_.set_tag(h, kQueued);
         enqueue_now(h);
       }
       h = mesh_.around_vertex(h);

@@ -17,8 +17,8 @@
 #include "decimation/decimation_state.h"
 #include "decimation/legality/fold_over.h"
 #include "decimation/legality/judge.h"
-#include "decimation/legality/link_condition.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
+#include "mesh/edit/link_condition.h"
 
 namespace vkmesh::detail {
 

@@ -21,7 +21,7 @@
 #include "decimation/cost/attribute_quadrics.h"
 #include "decimation/decimation_state.h"
 #include "decimation/setup/frame.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

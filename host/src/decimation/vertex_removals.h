@@ -22,10 +22,10 @@
 #include "decimation/legality/criteria.h"
 #include "decimation/legality/fold_over.h"
 #include "decimation/legality/judge.h"
-#include "decimation/legality/link_condition.h"
 #include "decimation/legality/local_change.h"
+#include "decimation/vertex_record.h"
 #include "decimation/vertex_stars.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "mesh/edit/link_condition.h"
 #include "simd/transpose.h"
 
 namespace vkmesh::detail {
@@ -277,7 +277,7 @@ class VertexRemovals {
       }
     }
     for (const Search& search : std::span(searches_).first(left))
-      search.removal->has_existing |= has_edge(mesh_, mesh_.origin(search.stop), search.other);
+      search.removal->has_existing |= mesh_.has_edge(mesh_.origin(search.stop), search.other);
   }
 
   /// Removes a vertex, if that is legal.
@@ -314,7 +314,7 @@ class VertexRemovals {
       for_new_edges(star(), removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
         const std::uint32_t p = star().target[a], q = star().target[b];
         if (self.vertices_[p].has(VertexRecord::kTouched) && self.vertices_[q].has(VertexRecord::kTouched))
-          removal.has_existing |= has_edge(self.mesh_, p, q);
+          removal.has_existing |= self.mesh_.has_edge(p, q);
       });
       if (removal.has_existing) self.avoid_existing(removal);
       return removal.error < kNone && !(removal.is_filled_again && exceeds_error());
@@ -462,7 +462,7 @@ class VertexRemovals {
   bool bar_existing(const VertexStar& star, const Triangles& triangles) {
     bool found = false;
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) {
-      if (!has_edge(mesh_, star.target[a], star.target[b])) return;
+      if (!mesh_.has_edge(star.target[a], star.target[b])) return;
       other_.barred[RetriangulationBatch::pair(a, b)][0] = kNone;
       found = true;
     });

@@ -10,7 +10,7 @@
 #include "base/prefetch.h"
 #include "decimation/cost/retriangulation.h"
 #include "decimation/legality/wedges.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

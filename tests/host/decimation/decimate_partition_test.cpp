@@ -18,17 +18,21 @@
 #include "decimation/decimation_state.h"
 #include "decimation/edge_collapses.h"
 #include "decimation/order/collapse_queues.h"
+#include "decimation/order/edge_tags.h"
 #include "decimation/parallel/coarsen.h"
 #include "decimation/parallel/partition.h"
 #include "decimation/parallel/partitioned_collapses.h"
 #include "decimation/setup/initial_quadrics.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
 using detail::CollapseMesh;
+using detail::kAtInterface;
+using detail::kParked;
+using detail::kQueued;
 using detail::Partition;
 using test::ring_of;
 
@@ -49,7 +53,7 @@ void check(const CollapseMesh& mesh, const std::vector<std::uint8_t>& labels) {
     if (h % 4 == 3 || !mesh.alive(h)) continue;
     const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
     if (p == mesh.apex() || q == mesh.apex()) continue;
-    REQUIRE(mesh.at_interface(h) == (((labels[p] & labels[q]) & kInner) == 0));
+    REQUIRE(mesh.has_tag(h, kAtInterface) == (((labels[p] & labels[q]) & kInner) == 0));
   }
 }
 
@@ -112,7 +116,7 @@ class Partitions {
       while (const std::size_t count = queue.take(ids))
         for (std::size_t i = 0; i < count; ++i) {
           const std::uint32_t h = ids[i];
-          const bool inner = mesh_.alive(h) && mesh_.queued(h) && !mesh_.at_interface(h);
+          const bool inner = mesh_.alive(h) && mesh_.has_tag(h, kQueued) && !mesh_.has_tag(h, kAtInterface);
           foreign +=
               inner && partition + 1 < shares_.size() && (labels_[mesh_.origin(h)] & ~kInner) != partition;
           std::uint32_t& bucket = lowest.try_emplace(h, MonotoneQueue::kNone).first->second;
@@ -123,8 +127,8 @@ class Partitions {
     for (std::uint32_t h = 0; h < 4 * mesh_.face_count(); ++h) {
       if (h % 4 == 3 || !mesh_.alive(h)) continue;
       const std::uint32_t t = mesh_.twin(h);
-      twice += mesh_.queued(h) + mesh_.queued(t) + mesh_.parked(h) != 1 ? 1 : 0;
-      if (!mesh_.queued(h)) continue;
+      twice += mesh_.has_tag(h, kQueued) + mesh_.has_tag(t, kQueued) + mesh_.has_tag(h, kParked) != 1 ? 1 : 0;
+      if (!mesh_.has_tag(h, kQueued)) continue;
       const auto found = lowest.find(h);
       if (found == lowest.end()) {
         ++nowhere;
@@ -243,7 +247,7 @@ TEST_CASE(
     std::size_t collapses = 0;
     for (int i = 0; i < 3000; ++i) {
       const auto h = static_cast<std::uint32_t>(random() % mesh.half_edge_bound());
-      if (h % 4 == 3 || !mesh.alive(h) || !mesh.at_interface(h)) continue;
+      if (h % 4 == 3 || !mesh.alive(h) || !mesh.has_tag(h, kAtInterface)) continue;
       const std::uint32_t p = mesh.origin(h), q = mesh.target(h);
       if (p == mesh.apex() || q == mesh.apex() || !link_condition(mesh, p, q)) continue;
       const auto ring = ring_of(mesh, p);
@@ -310,7 +314,7 @@ TEST_CASE("every edge is queued at first, once, by one of its halves", "[decimat
   for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h) {
     if (h % 4 == 3) continue;
     const std::uint32_t t = all.mesh.twin(h);
-    wrong += times[h] + times[t] == 1 && all.mesh.queued(h) == (times[h] == 1) ? 0 : 1;
+    wrong += times[h] + times[t] == 1 && all.mesh.has_tag(h, kQueued) == (times[h] == 1) ? 0 : 1;
   }
   CHECK(wrong == 0);
 }
@@ -325,7 +329,7 @@ TEST_CASE("each half of an edge knows whether it is at the interface before part
     check(all.mesh, labels);
     std::size_t interface = 0;
     for (std::uint32_t h = 0; h < 4 * all.mesh.face_count(); ++h)
-      interface += h % 4 != 3 && all.mesh.at_interface(h) ? 1 : 0;
+      interface += h % 4 != 3 && all.mesh.has_tag(h, kAtInterface) ? 1 : 0;
     CHECK(interface > 100);
   }
 }

@@ -21,7 +21,7 @@
 #include "decimation/legality/wedges.h"
 #include "decimation/parallel/partition.h"
 #include "decimation/setup/initial_quadrics.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 #include "support/shapes.h"
 #include "support/vectors.h"
 

@@ -14,7 +14,7 @@
 
 #include <vkmesh/decimation/decimate.h>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 #include "support/shapes.h"
 
 namespace vkmesh::test {

@@ -1,4 +1,4 @@
-#include "decimation/legality/link_condition.h"
+#include "mesh/edit/link_condition.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -80,7 +80,7 @@ TEST_CASE("edges that are there are found from either end", "[decimate]") {
     const Links links(mesh);
     for (std::uint32_t p = 0; p < mesh.apex(); ++p)
       for (std::uint32_t q = 0; q < mesh.apex(); ++q)
-        if (p != q) CHECK(detail::has_edge(mesh, p, q) == links.vertices[p].contains(q));
+        if (p != q) CHECK(mesh.has_edge(p, q) == links.vertices[p].contains(q));
   }
 }
 

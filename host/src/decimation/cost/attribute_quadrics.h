@@ -13,8 +13,8 @@
 #include "decimation/cost/edge_batch.h"
 #include "decimation/cost/retriangulation.h"
 #include "decimation/legality/wedges.h"
+#include "decimation/vertex_record.h"
 #include "math/quadric.h"
-#include "mesh/edit/collapse_mesh.h"
 
 namespace vkmesh::detail {
 

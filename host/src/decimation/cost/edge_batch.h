@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 #include "simd/lanes.h"
 
 namespace vkmesh::detail {

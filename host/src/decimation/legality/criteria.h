@@ -12,7 +12,7 @@
 #include "decimation/legality/hausdorff_bound.h"
 #include "decimation/legality/local_change.h"
 #include "decimation/setup/frame.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

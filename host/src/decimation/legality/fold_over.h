@@ -6,7 +6,7 @@
 #include <span>
 
 #include "decimation/collapse_neighbourhood.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

@@ -8,8 +8,8 @@
 
 #include <vkmesh/math/vec.h>
 
+#include "decimation/vertex_record.h"
 #include "math/triangle_distance.h"
-#include "mesh/edit/collapse_mesh.h"
 
 namespace vkmesh::detail {
 

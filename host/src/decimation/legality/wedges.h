@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

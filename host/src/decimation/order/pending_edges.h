@@ -10,7 +10,7 @@
 
 #include "base/prefetch.h"
 #include "decimation/cost/edge_batch.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

@@ -9,7 +9,7 @@
 #include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/parallel/coarsen_batch.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

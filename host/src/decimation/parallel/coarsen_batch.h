@@ -8,7 +8,7 @@
 #include <span>
 
 #include "base/prefetch.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

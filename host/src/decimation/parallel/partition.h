@@ -6,9 +6,21 @@
 #include <span>
 #include <vector>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/order/edge_tags.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
+
+/// Tags all edges at a vertex that is not isolated and on the interface. O(valence).
+inline void tag_interface_at(CollapseMesh& mesh, std::uint32_t v) {
+  const std::uint32_t start = mesh.vertices[v].leading;
+  std::uint32_t h = start;
+  do {
+    mesh.set_tag(h, kAtInterface);
+    mesh.set_tag(CollapseMesh::previous(h), kAtInterface);
+    h = mesh.around_vertex(h);
+  } while (h != start);
+}
 
 /// Which vertices one of several may remove, all of whose neighbours are of the same partition: faces at such
 /// vertices, and the vertices of these faces, nobody else reads or writes. All others are on the interface
@@ -36,7 +48,7 @@ class Partition {
     const auto owner = [&](std::uint32_t v) { return labels_[v] & ~kInner; };
     const auto leave = [&](std::uint32_t v) {
       labels_[v] &= ~kInner;
-      mesh.tag_interface_at(v);
+      tag_interface_at(mesh, v);
     };
     if (((labels_[gone] & labels_[kept]) & kInner) == 0) leave(kept);
     if (owner(gone) == owner(kept)) return;
@@ -70,8 +82,7 @@ void merge_pairs(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<c
     interface |= (inner ? 0u : 1u) << i;
     owner[i] = inner ? at[i] & ~Partition::kInner : Partition::kInterface;
   }
-  face.tags =
-      (face.tags & ~(7u << CollapseMesh::kInterfaceShift)) | interface << CollapseMesh::kInterfaceShift;
+  face.tags = (face.tags & ~(7u * tag_mask(kAtInterface))) | interface * tag_mask(kAtInterface);
   return owner;
 }
 

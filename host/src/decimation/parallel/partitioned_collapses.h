@@ -186,9 +186,10 @@ class PartitionedCollapses {
     Queue interface =
         std::exchange(interface_->queue, Queue(mesh.half_edge_bound(), interface_->queue.size()));
     const auto home = [&](std::uint32_t h) -> Queue* {
-      if (!mesh.queued(h)) return nullptr;
-      return mesh.at_interface(h) ? &interface_->queue
-                                  : &partitions_[labels_[mesh.origin(h)] & ~Partition::kInner]->share.queue;
+      if (!mesh.has_tag(h, kQueued)) return nullptr;
+      return mesh.has_tag(h, kAtInterface)
+                 ? &interface_->queue
+                 : &partitions_[labels_[mesh.origin(h)] & ~Partition::kInner]->share.queue;
     };
     for (const auto& half : halves) half->share.queue.distribute(home);
     interface.distribute(home);

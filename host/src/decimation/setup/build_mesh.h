@@ -15,7 +15,7 @@
 #include "base/parallel.h"
 #include "base/prefetch.h"
 #include "decimation/setup/frame.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 #include "spatial/morton_order.h"
 
 namespace vkmesh::detail {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "decimation/legality/wedges.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

@@ -11,7 +11,7 @@
 #include "decimation/legality/wedges.h"
 #include "decimation/setup/frame.h"
 #include "decimation/setup/initial_quadrics.h"
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

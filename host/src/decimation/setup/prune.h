@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/edit/collapse_mesh.h"
+#include "mesh/edit/edit_mesh.h"
 
 namespace vkmesh::detail {
 
@@ -27,24 +27,10 @@ namespace vkmesh::detail {
                       [&](std::uint32_t v) { return std::binary_search(sorted.begin(), sorted.end(), v); });
 }
 
-/// Whether an edge joins p and q, which are not isolated. It walks around both at once, since one may have
-/// many edges: O(the smaller valence). Filling a hole may not make an edge that is there.
-[[nodiscard]] inline bool has_edge(const CollapseMesh& mesh, std::uint32_t p, std::uint32_t q) {
-  const std::uint32_t p0 = mesh.vertices[p].leading, q0 = mesh.vertices[q].leading;
-  std::uint32_t at_p = p0, at_q = q0;
-  do {
-    if (mesh.target(at_p) == q || mesh.target(at_q) == p) return true;
-    at_p = mesh.around_vertex(at_p);
-    at_q = mesh.around_vertex(at_q);
-  } while (at_p != p0 && at_q != q0);
-  return false;
-}
-
 /// Whether a vertex, by all edges that leave it, is the tip of a tetrahedron: the face that fills its hole
 /// would be there already.
-[[nodiscard]] inline bool is_tip_of_tetrahedron(const CollapseMesh& mesh,
-                                                std::span<const std::uint32_t> edges) {
-  const auto beyond = [&](std::size_t i) { return mesh.twin(CollapseMesh::next(edges[i])) >> 2; };
+[[nodiscard]] inline bool is_tip_of_tetrahedron(const EditFaces& mesh, std::span<const std::uint32_t> edges) {
+  const auto beyond = [&](std::size_t i) { return mesh.twin(EditFaces::next(edges[i])) >> 2; };
   return edges.size() == 3 && beyond(0) == beyond(1);
 }
 

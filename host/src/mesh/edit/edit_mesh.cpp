@@ -1,16 +1,17 @@
-#include "mesh/edit/collapse_mesh.h"
+#include "mesh/edit/edit_mesh.h"
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
+#include <array>
 #include <numeric>
+#include <string>
+#include <utility>
 
 #include "base/parallel.h"
 
 namespace vkmesh::detail {
 
 /// How the faces around a vertex follow each other. Entry i is about the i-th half-edge that leaves it.
-class CollapseMesh::Fan {
+class EditFaces::Fan {
  public:
   explicit Fan(std::size_t most) : to_(most), from_(most), clockwise_(most) {}
 
@@ -92,7 +93,7 @@ class CollapseMesh::Fan {
 
 /// The same for a few half-edges around an inner vertex, unrolled for each number of them: a loop whose end
 /// is unpredictable costs more than its body.
-class CollapseMesh::SmallFan {
+class EditFaces::SmallFan {
  public:
   /// Sets the twins of the half-edges before these if they are found to form one closed fan, which they may
   /// be even so.
@@ -123,9 +124,9 @@ class CollapseMesh::SmallFan {
     for (std::uint32_t i = 0; i < kCount; ++i) {
       const std::uint32_t h = leaving[i], corner = h & 3u;
       const Face& face = faces[h >> 2];
-      to[i] = face.origin[CollapseMesh::kNextCorner[corner]];
-      from[i] = face.origin[CollapseMesh::kPreviousCorner[corner]];
-      before[i] = (h & ~3u) | CollapseMesh::kPreviousCorner[corner];
+      to[i] = face.origin[EditFaces::kNextCorner[corner]];
+      from[i] = face.origin[EditFaces::kPreviousCorner[corner]];
+      before[i] = (h & ~3u) | EditFaces::kPreviousCorner[corner];
       table_[from[i] % kTable] = static_cast<std::uint8_t>(i);
     }
     std::uint32_t different = 0;
@@ -150,15 +151,14 @@ class CollapseMesh::SmallFan {
   std::array<std::uint8_t, kTable> table_{};  // by the low bits of `from`
 };
 
-bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading) {
+bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading,
+                        std::uint32_t* const leaving) {
   constexpr std::size_t kGrain = 1 << 14;
   const std::size_t corners = 3 * face_count_;
-  // The half-edges that leave each vertex, where the vertices will be: that is memory to be had at no cost.
-  constexpr std::size_t kUsual = 6, kAhead = 64, kTail = kAhead + kUsual;  // what most vertices have
-  constexpr std::size_t kWords = sizeof(VertexRecord) / sizeof(std::uint32_t);
-  vertices = LargeArray<VertexRecord>(std::max(vertex_count + 1, (corners + kTail + kWords - 1) / kWords));
-  auto* const leaving = reinterpret_cast<std::uint32_t*>(&vertices[0]);
-  for (std::size_t i = 0; i < kTail; ++i) leaving[corners + i] = 0;
+  // `leaving`: the half-edges that leave each vertex, then what is read ahead of them.
+  constexpr std::size_t kUsual = 6, kAhead = 64;  // what most vertices have
+  static_assert(kScratchTail == kAhead + kUsual);
+  for (std::size_t i = 0; i < kScratchTail; ++i) leaving[corners + i] = 0;
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
   ranges_.for_each([&](const VertexRanges::Range& range) {
     range.for_each_face([&](std::uint32_t f) {
@@ -221,13 +221,12 @@ bool CollapseMesh::connect(std::size_t vertex_count, std::vector<std::uint32_t>&
     return found;
   });
   if (!fans.single) return false;
-  const std::vector<std::uint32_t>& boundary = fans.boundary;
-  return close(boundary);
+  return add_ghosts(fans.boundary);
 }
 
 // Puts a ghost, the triangle (target, origin, apex), beyond each boundary edge; these in the order of their
 // origins, of which none comes twice.
-bool CollapseMesh::close(std::span<const std::uint32_t> boundary) {
+bool EditFaces::add_ghosts(std::span<const std::uint32_t> boundary) {
   const std::size_t all = face_count_ + boundary.size();
   if (all > kMaxFaces) return false;
   if (all > faces_.size()) faces_.grow(all, face_count_);
@@ -250,47 +249,55 @@ bool CollapseMesh::close(std::span<const std::uint32_t> boundary) {
   return true;
 }
 
-std::array<std::uint32_t, 2> CollapseMesh::fill_hole(std::span<const std::uint32_t> edges,
-                                                     std::span<const std::array<std::uint8_t, 3>> triangles,
-                                                     std::size_t first) {
-  const std::size_t n = edges.size();
-  std::array<std::uint32_t, kMaxHoleEdges> vertex, record;
-  // By two corners the half-edge that waits for its twin: first what lies around the hole, then edges of
-  // triangles whose other side is still to come.
-  std::array<std::array<std::uint32_t, kMaxHoleEdges>, kMaxHoleEdges> beyond;
-  for (std::size_t i = 0; i < n; ++i) {
-    vertex[i] = target(edges[i]);
-    record[i] = edges[i] >> 2;
-    if (i + 1 < n)
-      beyond[i][i + 1] = twin(next(edges[i]));
-    else
-      beyond[0][i] = twin(next(edges[i]));
+Result<void> EditFaces::validate_connectivity(std::span<const std::uint32_t> leading) const {
+  const auto broken = [](const char* rule, const char* element, std::size_t index) {
+    return fail(ErrorCode::kUnsuitable, std::string("connectivity is broken: ") + rule + " (" + element +
+                                            " " + std::to_string(index) + ")");
+  };
+  const std::size_t bound = half_edge_bound();
+  if (face_count_ + ghosts_ > faces_.size()) return broken("faces have records", "face", faces_.size());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  std::vector<std::uint32_t> degree(leading.size(), 0);
+  for (std::uint32_t h = 0; h < bound; ++h) {
+    if (h % 4 == 3) continue;
+    if (!alive(h)) {
+      if (face(h).tags != 0) return broken("a face that is gone has no tags", "face", h / 4);
+      continue;
+    }
+    const std::uint32_t p = origin(h), q = target(h), t = twin(h);
+    if (p >= leading.size()) return broken("an origin is a vertex", "half-edge", h);
+    if (p == q) return broken("a face repeats no vertex", "face", h / 4);
+    if ((p == apex_) != (is_ghost(h) && h % 4 == 2))
+      return broken("the apex is the last corner of each ghost, and of no other face", "half-edge", h);
+    if (t >= bound || t % 4 == 3 || !alive(t)) return broken("a twin is a half-edge", "half-edge", h);
+    if (t == h || twin(t) != h) return broken("twins are mutual", "half-edge", h);
+    if (origin(t) != q) return broken("twins run in opposite directions", "half-edge", h);
+    if (p != apex_ && q != apex_) {
+      edges.emplace_back(p, q);
+      if (is_ghost(h) && is_ghost(t)) return broken("an edge has a face", "half-edge", h);
+    }
+    ++degree[p];
   }
-  // The faces at an apex are the last two.
-  const std::size_t ghost = vertex[n - 1] == apex_ ? n - 1 : kInvalid;
-  std::size_t taken = first;
-  for (const auto& [a, b, c] : triangles) {
-    const std::uint32_t f = c == ghost ? record[n - 1] : record[taken], h = 4 * f;
-    if (c != ghost) taken = taken + 2 < n ? taken + 1 : 0;
-    Face& face = faces_[f];
-    face.tags = 0;
-    face.origin = {vertex[a], vertex[b], vertex[c]};
-    vertices[vertex[a]].leading = h;
-    vertices[vertex[b]].leading = h + 1;
-    if (c != ghost) vertices[vertex[c]].leading = h + 2;
-    set_twins(h + 2, beyond[a][c]);
-    if (b == a + 1)
-      set_twins(h, beyond[a][b]);
-    else
-      beyond[a][b] = h;
-    if (c == b + 1)
-      set_twins(h + 1, beyond[b][c]);
-    else
-      beyond[b][c] = h + 1;
+  std::ranges::sort(edges);
+  if (const auto twice = std::ranges::adjacent_find(edges); twice != edges.end())
+    return broken("one edge joins two vertices", "vertex", twice->first);
+  for (std::uint32_t v = 0; v < leading.size(); ++v) {
+    const std::uint32_t start = leading[v];
+    if (v == apex_) continue;
+    if ((start & kVertexGone) != 0) {
+      if (degree[v] != 0) return broken("a vertex that is gone has no faces", "vertex", v);
+      continue;
+    }
+    if (start >= bound || start % 4 == 3 || !alive(start) || origin(start) != v)
+      return broken("a leading half-edge leaves its vertex", "vertex", v);
+    std::uint32_t met = 0, h = start;
+    do {
+      ++met;
+      h = around_vertex(h);
+    } while (h != start && met <= degree[v]);
+    if (met != degree[v]) return broken("a vertex has one fan", "vertex", v);
   }
-  const std::array<std::uint32_t, 2> gone = {record[taken], record[ghost == kInvalid ? n - 1 : n - 2]};
-  for (const std::uint32_t f : gone) remove(f);
-  return {faces_[gone[0]].source, faces_[gone[1]].source};
+  return {};
 }
 
 }  // namespace vkmesh::detail

@@ -1,0 +1,69 @@
+// One-rings: the neighbours of a vertex and the half-edges to them, and walks that gather them.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/prefetch.h"
+#include "mesh/edit/edit_mesh.h"
+
+namespace vkmesh::detail {
+
+/// Neighbours of a vertex, counter-clockwise, and the half-edges from it to them: all, or those from one on.
+struct OneRing {
+  std::span<const std::uint32_t> vertices, edges;
+
+  [[nodiscard]] std::size_t size() const { return edges.size(); }
+};
+
+/// The step from a half-edge to the next around its origin: the vertex to which that leads, and itself.
+struct RingStep {
+  std::uint32_t vertex, edge;
+
+  [[gnu::always_inline]] static RingStep from(const EditFaces::Face* faces, std::uint32_t h) {
+    const EditFaces::Face& face = faces[h >> 2];
+    const std::uint32_t corner = EditFaces::kPreviousCorner[h & 3u];
+    return {face.origin[corner], face.twin[corner]};
+  }
+};
+
+/// A ring of at most kCapacity neighbours.
+template <std::uint32_t kCapacity>
+struct FixedRing {
+  static constexpr std::uint32_t kTooLong = ~0u;
+  std::array<std::uint32_t, kCapacity> vertex, edge;  // the first `size` are meant
+  std::uint32_t size;                                 // kTooLong when there are more
+
+  [[nodiscard]] bool is_whole() const { return size != kTooLong; }
+  [[nodiscard]] OneRing part(std::size_t first, std::size_t count) const {
+    return {std::span(vertex).subspan(first, count), std::span(edge).subspan(first, count)};
+  }
+};
+
+/// A ring of any size. Whole blocks of kBlock vertices can be read.
+class LongRing {
+ public:
+  static constexpr std::size_t kBlock = 16;
+
+  /// Gathers the ring of the origin of h from beyond its target, which is left out.
+  void gather(const EditFaces& mesh, std::uint32_t h) {
+    vertices_.clear();
+    edges_.clear();
+    for (auto step = RingStep::from(mesh.faces(), h); step.edge != h;
+         step = RingStep::from(mesh.faces(), step.edge)) {
+      vertices_.push_back(step.vertex);
+      edges_.push_back(step.edge);
+    }
+    vertices_.resize((edges_.size() + kBlock - 1) / kBlock * kBlock);
+  }
+  [[nodiscard]] OneRing ring() const { return {std::span(vertices_).first(edges_.size()), edges_}; }
+
+ private:
+  std::vector<std::uint32_t> vertices_, edges_;
+};
+
+}  // namespace vkmesh::detail
