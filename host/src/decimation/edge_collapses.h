@@ -35,10 +35,9 @@ namespace vkmesh::detail {
 
 /// Edge collapses, the cheapest first.
 ///
-/// Each edge stands in the queue at most once in earnest, by the half-edge that is tagged as queued; what the
-/// queue serves without the tag is stale. An edge whose collapse was found illegal is parked, and comes back
-/// when a vertex next to it has changed: nothing else can make it legal. With attributes costs rise and fall
-/// as they do without.
+/// Each edge has at most one live queue entry, that of the half-edge tagged kQueued; untagged entries are
+/// stale and skipped. An edge whose collapse was illegal is parked, and comes back when a vertex next to it
+/// has changed: nothing else can make it legal. With attributes costs rise and fall as they do without.
 template <class Placement, class Queue, bool kAttributes = false>
 class EdgeCollapses {
  public:
@@ -94,14 +93,14 @@ class EdgeCollapses {
       std::uint8_t* const numbers = block.number.data();
       // Branchless: which faces are left is unpredictable.
       std::uint32_t* const alive = block.alive.data();
-      std::size_t left = 0, count = 0;
+      std::size_t alive_count = 0, count = 0;
       for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
         prefetch_stream(&faces[f]);
-        alive[left] = f;
-        left += faces[f].alive() ? 1 : 0;
+        alive[alive_count] = f;
+        alive_count += faces[f].alive() ? 1 : 0;
       }
-      for (std::size_t k = 0; k < left; ++k) {
-        for (const std::uint32_t v : faces[alive[std::min(k + kAhead, left - 1)]].origin)
+      for (std::size_t k = 0; k < alive_count; ++k) {
+        for (const std::uint32_t v : faces[alive[std::min(k + kAhead, alive_count - 1)]].origin)
           prefetch(&vertices[v]);
         const std::uint32_t f = alive[k];
         CollapseMesh::Face& face = faces[f];
@@ -120,9 +119,9 @@ class EdgeCollapses {
       }
       block.count = count;
       for (std::size_t i = 0; i < count; i += EdgeBatch::kSize) {
-        const auto some = std::span(block.ids).subspan(i, std::min(EdgeBatch::kSize, count - i));
-        evaluate(some, std::span(block.ends).subspan(i, some.size()), block.batch);
-        rank(some, block.batch, block.change, &block.cost[i]);
+        const auto batch_ids = std::span(block.ids).subspan(i, std::min(EdgeBatch::kSize, count - i));
+        evaluate(batch_ids, std::span(block.ends).subspan(i, batch_ids.size()), block.batch);
+        rank(batch_ids, block.batch, block.change, &block.cost[i]);
       }
     };
     const auto finish = [&](std::size_t, std::size_t, First& block) {
@@ -229,7 +228,7 @@ class EdgeCollapses {
     Placement::place(batch, edges.size());
   }
 
-  /// Of the edges of the batch.
+  /// The ranks of the edges of the batch.
   const float* ranks_of(std::span<const std::uint32_t> edges) {
     if constexpr (!Placement::kByCriteria) return batch_.cost.data();
     rank(edges, batch_, change_, ranks_.data());
@@ -305,7 +304,7 @@ class EdgeCollapses {
       share_->forwarded.push_back(h);
   }
 
-  /// What was taken and not looked at in earnest.
+  /// Puts back what was taken and not tried.
   void put_back() {
     for (auto& b : pending_) {
       for (std::size_t i = b->tried; i < b->due_count; ++i) put_back(b->due[i].half_edge);
@@ -349,7 +348,7 @@ class EdgeCollapses {
     if (now.tried == now.due_count) now.reset();
   }
 
-  /// Of a lane of the batch.
+  /// The edge of a lane of the batch.
   [[nodiscard]] Due due_of(std::size_t i, std::uint32_t half_edge) const {
     return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
   }
@@ -363,11 +362,10 @@ class EdgeCollapses {
       share_->queue.insert_now(h);
       return;
     }
-    EdgeRings rings;
-    const Reason reason = judge_edge(b, i, p, q, rings);
+    const Reason reason = judge_edge(b, i, p, q);
     if (reason == Reason::kNone) {
       if (!Placement::kByCriteria && watches_distance() && is_put_off(due, p, q)) return;
-      collapse(due, p, q, rings);
+      collapse(due, p, q);
     } else {
       ++share_->state.outcome.rejected[reason];
       mesh_.clear_tag(h, kQueued);
@@ -377,13 +375,13 @@ class EdgeCollapses {
     }
   }
 
-  /// Of the edge whose rings these are.
+  /// Whether the collapse of the edge around which the merger has looked may move points too far.
   [[nodiscard]] bool watches_distance() const {
     return share_->cost_of_distance > 0 &&
-           (!share_->only_at_boundary || (merger_.flags_around() & VertexRecord::kLocked) != 0);
+           (!share_->only_at_boundary || (around().flags() & VertexRecord::kLocked) != 0);
   }
-  /// Planes do not tell how far points move within them: a thin tip goes at next to no cost. So a legal
-  /// collapse waits until the costs that are due allow for the distance between the faces before and after.
+  /// Quadrics do not see tangential drift: a thin tip goes at next to no cost. So a legal collapse waits
+  /// until the costs that are due allow for the distance between the faces before and after.
   [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
     const float allowed = std::max(due.cost, share_->queue.level()) / share_->cost_of_distance;
     const float distance2 = merger_.squared_distance(due, p, q, allowed);
@@ -398,13 +396,12 @@ class EdgeCollapses {
     evaluate(std::span(&h, 1));
     Pending& alone = *pending_[0];
     alone.due[0] = due_of(0, h);
-    alone.walked[0].size = WalkedRing::kTooLong;
-    EdgeRings rings;
-    return judge_edge(alone, 0, mesh_.origin(h), mesh_.target(h), rings);
+    alone.walked[0].size = Pending::Ring::kTooLong;
+    return judge_edge(alone, 0, mesh_.origin(h), mesh_.target(h));
   }
 
-  /// The collapse of edge i of a batch, as judge() takes it. It looks around, and sets the rings, when it
-  /// comes to the link condition.
+  /// The collapse of edge i of a batch, as judge() takes it. It looks around when it comes to
+  /// the link condition.
   struct Change : Merger::Change {
     EdgeCollapses& self;
     const Pending& batch;
@@ -421,71 +418,46 @@ class EdgeCollapses {
       return self.merger_.exceeds_error(state(), this->due, this->p, this->q);
     }
     [[nodiscard]] bool meets_link_condition() const {
-      this->rings = self.rings_of(batch, i);
+      self.look_around(batch, i);
       return Merger::Change::meets_link_condition();
     }
     [[nodiscard]] bool meets_criteria() const {
       return state().criteria == nullptr || !state().criteria->bounds() ||
-             self.meets_criteria(this->due, this->p, this->q, this->rings);
+             self.meets_criteria(this->due, this->p, this->q);
     }
   };
-  [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q,
-                                  EdgeRings& rings) {
-    return judge(
-        Change{{{}, merger_, b.due[i], p, q, rings, share_->state.limits.cos_deviation}, *this, b, i});
+  [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q) {
+    return judge(Change{{{}, merger_, b.due[i], p, q, share_->state.limits.cos_deviation}, *this, b, i});
   }
 
-  [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q,
-                                    const EdgeRings& rings) {
+  [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q) {
     record_collapse(change_, mesh_, due.half_edge,
                     Merger::place_of(vertices_[p], vertices_[q], due.end, due.x));
-    const std::size_t at_p = rings.p.size() + 1, at_q = rings.q.size() + 1;
+    const std::size_t at_p = around().ring_p().size() + 1, at_q = around().ring_q().size() + 1;
     change_.edges_before =
         std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
     change_.edges_after = at_p + at_q - 4 - (mesh_.on_boundary(p) || mesh_.on_boundary(q) ? 1 : 0);
     return share_->state.criteria->allow(change_);
   }
 
-  /// A ring of any size.
-  struct LongRing {
-    std::vector<std::uint32_t> vertices, edges;
-    std::size_t size = 0;
-
-    // Of the origin of h, from beyond its target.
-    void collect(const CollapseMesh& mesh, std::uint32_t h) {
-      vertices.clear();
-      edges.clear();
-      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out)) {
-        vertices.push_back(mesh.target(out));
-        edges.push_back(out);
-      }
-      size = vertices.size();
-      vertices.resize((size + CollapseNeighbourhood::kBlock - 1) / CollapseNeighbourhood::kBlock *
-                      CollapseNeighbourhood::kBlock);
-    }
-  };
-
-  /// The rings that were walked, unless a collapse of this batch was near. The merger has looked around.
-  EdgeRings rings_of(const Pending& b, std::size_t i) {
-    using Ring = EdgeRings::Ring;
-    const WalkedRing &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
-    if (at_p.is_whole() && at_q.is_whole()) {
-      const EdgeRings rings{Ring(at_p.vertex).first(at_p.size), Ring(at_q.vertex).first(at_q.size),
-                            Ring(at_p.edge).first(at_p.size), Ring(at_q.edge).first(at_q.size)};
-      if ((merger_.look_around(rings) & VertexRecord::kTouched) == 0) return rings;
-    }
+  /// Looks around an edge with the rings that were walked, or with new ones if a collapse of this batch was
+  /// near.
+  void look_around(const Pending& b, std::size_t i) {
+    const auto &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
+    if (at_p.is_whole() && at_q.is_whole() &&
+        (merger_.look_around(at_p.part(0, at_p.size), at_q.part(0, at_q.size)).flags() &
+         VertexRecord::kTouched) == 0)
+      return;
     const std::uint32_t h = b.due[i].half_edge;
-    ring_p_.collect(mesh_, h);
-    ring_q_.collect(mesh_, mesh_.twin(h));
-    const EdgeRings rings{Ring(ring_p_.vertices).first(ring_p_.size),
-                          Ring(ring_q_.vertices).first(ring_q_.size), ring_p_.edges, ring_q_.edges};
-    merger_.look_around(rings);
-    return rings;
+    ring_p_.gather(mesh_, h);
+    ring_q_.gather(mesh_, mesh_.twin(h));
+    merger_.look_around(ring_p_.ring(), ring_q_.ring());
   }
+  [[nodiscard]] const CollapseNeighbourhood& around() const { return merger_.neighbourhood(); }
 
-  void collapse(const Due& due, std::uint32_t p, std::uint32_t q, const EdgeRings& rings) {
+  void collapse(const Due& due, std::uint32_t p, std::uint32_t q) {
     DecimationState& state = share_->state;
-    const Merge merge = merger_.plan(state, due, p, q, rings);
+    const Merge merge = merger_.plan(state, due, p, q);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) {
       collect_moved(merge.half_edge);
       price_moved(vertices_[merge.gone], vertices_[merge.kept], due.cost);
@@ -495,11 +467,12 @@ class EdgeCollapses {
     erase_queued(mesh_.twin(merge.half_edge));
     const CollapseMesh::Collapsed collapsed = merger_.carry_out(state, due, merge, share_->queue.bucket());
     touched_.push_back(merge.kept);
-    if (share_->partition.is_interface()) share_->partition.merge(mesh_, merge.gone, merge.kept, merge.ring);
+    if (share_->partition.is_interface())
+      share_->partition.merge(mesh_, merge.gone, merge.kept, merge.others.vertices);
     for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
     if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(merge.kept);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) put_moved();
-    revive(merge.kept, rings);
+    revive(merge.kept);
   }
 
   // The half-edges of a face that goes.
@@ -626,9 +599,9 @@ class EdgeCollapses {
   }
 
   // Parked edges near v may have become legal.
-  void revive(std::uint32_t v, const EdgeRings& rings) {
-    if ((merger_.flags_around() & VertexRecord::kHasParked) != 0)
-      for (const EdgeRings::Ring& ring : {rings.p, rings.q})
+  void revive(std::uint32_t v) {
+    if ((around().flags() & VertexRecord::kHasParked) != 0)
+      for (const auto& ring : {around().ring_p().vertices, around().ring_q().vertices})
         for (const std::uint32_t r : ring)
           if (vertices_[r].has(VertexRecord::kHasParked)) {
             if (!share_->partition.is_bounded() || share_->partition.holds(r))

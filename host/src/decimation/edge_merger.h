@@ -19,15 +19,9 @@
 #include "decimation/legality/judge.h"
 #include "decimation/vertex_record.h"
 #include "mesh/edit/link_condition.h"
+#include "mesh/edit/one_ring.h"
 
 namespace vkmesh::detail {
-
-/// The neighbours of p but q and those of q but p, counter-clockwise, and the half-edges from p and q to
-/// them. What follows the neighbours up to a multiple of CollapseNeighbourhood::kBlock is there, too.
-struct EdgeRings {
-  using Ring = std::span<const std::uint32_t>;
-  Ring p, q, from_p, from_q;
-};
 
 /// Edges of a mesh, with attributes or without. It knows the surroundings of one edge at a time.
 template <bool kAttributes>
@@ -48,49 +42,49 @@ class EdgeMerger {
     return static_cast<double>(geometric_cost(state, due, p, q)) > state.limits.error2 * weight;
   }
 
-  /// Makes these the surroundings. Returns the flags of all their vertices.
-  std::uint32_t look_around(const EdgeRings& rings) {
-    summary_ = neighbourhood_.set(vertices_, rings.p, rings.q);
-    return summary_.flags;
+  /// Looks around an edge; see CollapseNeighbourhood.
+  const CollapseNeighbourhood& look_around(const OneRing& p, const OneRing& q) {
+    neighbourhood_.set(vertices_, p, q);
+    return neighbourhood_;
   }
-  [[nodiscard]] std::uint32_t flags_around() const { return summary_.flags; }
+  [[nodiscard]] const CollapseNeighbourhood& neighbourhood() const { return neighbourhood_; }
 
-  /// The collapse of the edge around which it was looked, as judge() takes it.
+  /// The collapse of the edge around which the merger has looked, as judge() takes it.
   struct Change : AlwaysLegal {
     EdgeMerger& merger;
     const DueEdge& due;
     std::uint32_t p, q;
-    EdgeRings& rings;
     float cos_deviation;  // a face may turn by so much
 
     [[nodiscard]] bool meets_link_condition() const {
-      // Rings of a usual size were compared when it was looked around.
-      const bool are_compared = std::max(rings.p.size(), rings.q.size()) <= 8 + 2 && rings.p.size() > 2;
-      if (are_compared && !merger.summary_.may_share) return rings.p.front() != rings.p.back();
-      return detail::meets_link_condition(rings.p, rings.q, merger.sorted_);
+      const auto &ring_p = merger.neighbourhood_.ring_p().vertices,
+                 &ring_q = merger.neighbourhood_.ring_q().vertices;
+      if (ring_p.size() > 2 && !merger.neighbourhood_.may_share_more())
+        return ring_p.front() != ring_p.back();
+      return detail::meets_link_condition(ring_p, ring_q, merger.sorted_);
     }
     [[nodiscard]] bool folds_over() const {
       return detail::folds_over(merger.neighbourhood_, merger.vertices_[p].position,
                                 merger.vertices_[q].position, due.x, cos_deviation);
     }
   };
-  /// See squared_distance_of_collapse; of the same edge.
+  /// squared_distance_of_collapse() of the same edge.
   [[nodiscard]] float squared_distance(const DueEdge& due, std::uint32_t p, std::uint32_t q,
                                        float allowed) const {
     return squared_distance_of_collapse(neighbourhood_, vertices_[p].position, vertices_[q].position, due.x,
                                         allowed);
   }
 
-  /// Which of two vertices goes, the half-edge from it to the other, its other neighbours and the half-edges
-  /// to them.
+  /// Which of two vertices goes, the half-edge from it to the other, and its other neighbours.
   struct Merge {
     std::uint32_t half_edge, gone, kept;
-    EdgeRings::Ring ring, others;
+    OneRing others;
   };
-  /// What was chosen; else that of fewer neighbours goes, which is less work.
-  [[nodiscard]] Merge plan(const DecimationState& state, const DueEdge& due, std::uint32_t p, std::uint32_t q,
-                           const EdgeRings& rings) const {
-    const std::size_t at_p = rings.p.size(), at_q = rings.q.size();
+  /// Decides which end goes: as the placement has chosen, else that of fewer neighbours, which is less work.
+  [[nodiscard]] Merge plan(const DecimationState& state, const DueEdge& due, std::uint32_t p,
+                           std::uint32_t q) const {
+    const OneRing &ring_p = neighbourhood_.ring_p(), &ring_q = neighbourhood_.ring_q();
+    const std::size_t at_p = ring_p.size(), at_q = ring_q.size();
     const bool is_first =
         (vertices_[p].source & VertexRecord::kSourceMask) < (vertices_[q].source & VertexRecord::kSourceMask);
     bool keep_p = (at_p > at_q) | ((at_p == at_q) & is_first);
@@ -102,7 +96,7 @@ class EdgeMerger {
     // Branchless: which end stays is unpredictable.
     const std::uint32_t if_p = 0u - static_cast<std::uint32_t>(keep_p), kept = q ^ ((p ^ q) & if_p);
     const std::uint32_t h = due.half_edge ^ ((due.half_edge ^ mesh_.twin(due.half_edge)) & if_p);
-    return {h, p ^ q ^ kept, kept, keep_p ? rings.q : rings.p, keep_p ? rings.from_q : rings.from_p};
+    return {h, p ^ q ^ kept, kept, keep_p ? ring_q : ring_p};
   }
 
   /// Merges the quadrics, and the vertices. Both are touched then. `bucket` is for the history.
@@ -144,7 +138,7 @@ class EdgeMerger {
                                       kept.has(VertexRecord::kMoved),
                                       {mesh_.face(h).source, mesh_.face(mesh_.twin(h)).source},
                                       bucket});
-    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, merge.others);
+    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, merge.others.edges);
     state.faces -= collapsed.faces;
     --state.vertices;
     ++state.outcome.collapses;
@@ -155,7 +149,7 @@ class EdgeMerger {
   }
 
  private:
-  /// Of a collapse: its whole cost, but for what attributes have of it.
+  /// The collapse's cost without its attribute term.
   [[nodiscard]] float geometric_cost(const DecimationState& state, const DueEdge& due, std::uint32_t p,
                                      std::uint32_t q) const {
     if constexpr (kAttributes) return state.attributes->geometric_cost(p, q, due.x);
@@ -165,7 +159,6 @@ class EdgeMerger {
   CollapseMesh& mesh_;
   LargeArray<VertexRecord>& vertices_;
   CollapseNeighbourhood neighbourhood_;
-  CollapseNeighbourhood::Summary summary_{};
   std::vector<std::uint32_t> sorted_;
 };
 

@@ -160,9 +160,9 @@ class VertexRemovals {
     bool has_existing;             // a new edge that the mesh has already
     bool is_filled_again = false;  // to avoid such edges
   };
-  /// A walk around the end of a new edge, in search of the other.
+  /// A walk around an end of a new edge, in search of the other: outside the star.
   struct Search {
-    std::uint32_t at, stop, other;
+    std::uint32_t from, last, other;
     Removal* removal;
   };
 
@@ -170,7 +170,7 @@ class VertexRemovals {
   /// those of side 1 first.
   [[nodiscard]] static std::size_t first_face([[maybe_unused]] const VertexStar& star) {
     if constexpr (kAttributes)
-      if (star.sides.split) return star.sides.last % (star.edges - 1);
+      if (star.sides.split) return star.sides.last % (star.ring.size - 1);
     return 0;
   }
 
@@ -188,7 +188,7 @@ class VertexRemovals {
              order.subspan(next, std::min(order.size() - next, RetriangulationBatch::kLanes))) {
           const VertexStar& star = stars_[i];
           prefetch(&vertices_[star.vertex]);
-          for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.target[k]]);
+          for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.ring.vertex[k]]);
         }
         fill(batch_, attributes_, n);
         for (std::size_t lane = 0; lane < count; ++lane) use(stars_[order[from + lane]], lane);
@@ -213,7 +213,7 @@ class VertexRemovals {
       for (std::size_t lane = 0; lane < walked.size(); ++lane) {
         const VertexStar& star = stars_[walked[lane]];
         const std::size_t n = star.neighbours();
-        state_.attributes->set(attributes, lane, star.all_edges(), n, star.sides);
+        state_.attributes->set(attributes, lane, star.edges(), n, star.sides);
         for (std::size_t b = 1; b < n; ++b)
           for (std::size_t a = 0; a < b; ++a)
             batch.barred[RetriangulationBatch::pair(a, b)][lane] = star.sides.cross(a, b) ? kNone : 0.0f;
@@ -234,7 +234,7 @@ class VertexRemovals {
           &batch.b[0][lane],   &batch.b[1][lane], &batch.b[2][lane], unused.data()};
       transpose_records<16>(records, [&](std::size_t word) { return to[word]; });
       for (std::size_t k = 0; k < stars[0]->neighbours(); ++k) {
-        for (std::size_t i = 0; i < 4; ++i) records[i] = &vertices_[stars[i]->target[k]];
+        for (std::size_t i = 0; i < 4; ++i) records[i] = &vertices_[stars[i]->ring.vertex[k]];
         auto& [x, y, z] = batch.ring[k];
         transpose_4x4(records, {&x[lane], &y[lane], &z[lane], unused.data()});
       }
@@ -250,34 +250,31 @@ class VertexRemovals {
     }
   }
 
-  /// Sets has_existing of all that are due, by walks around one end of each new edge, one step of each in
-  /// turn.
+  /// Sets has_existing of all that are due, by walks around one end of each new edge.
   void find_existing() {
     searches_.clear();
     for (Removal& removal : due_) {
       const VertexStar& star = *removal.star;
-      for (std::size_t i = 0; i < star.edges; ++i) prefetch(&mesh_.face(beyond(star, i)));  // to be joined
+      for (std::size_t i = 0; i < star.ring.size; ++i)
+        prefetch(&mesh_.face(beyond(star, i)));  // to be joined
       for_new_edges(star, removal.triangles, [&](std::size_t a, std::size_t b) {
-        const std::uint32_t at = beyond(star, a > 0 ? a - 1 : star.edges - 1);
-        searches_.push_back({at, CollapseMesh::next(star.edge[a]), star.target[b], &removal});
+        const std::uint32_t before = star.ring.edge[a > 0 ? a - 1 : star.ring.size - 1];
+        searches_.push_back({CollapseMesh::previous(before), CollapseMesh::next(star.ring.edge[a]),
+                             star.ring.vertex[b], &removal});
       });
     }
-    std::size_t left = searches_.size();
-    for (std::size_t step = 0; step < kSearched && left > 0; ++step) {
-      const std::size_t now = left;
-      left = 0;
-      for (std::size_t i = 0; i < now; ++i) {
-        Search search = searches_[i];
-        const bool found = mesh_.target(search.at) == search.other;
-        search.removal->has_existing |= found;
-        search.at = mesh_.around_vertex(search.at);
-        prefetch(&mesh_.face(search.at));
-        searches_[left] = search;
-        left += !found && search.at != search.stop ? 1 : 0;
-      }
-    }
-    for (const Search& search : std::span(searches_).first(left))
-      search.removal->has_existing |= mesh_.has_edge(mesh_.origin(search.stop), search.other);
+    walks_.start(kSearched);
+    for (Search& search : searches_) walks_.add(search.from, search.last, search);
+    walks_.walk(
+        mesh_,
+        [](Search& search, std::uint32_t, const RingStep& step, bool) {
+          const bool found = step.vertex == search.other;
+          search.removal->has_existing |= found;
+          return !found;
+        },
+        [this](Search& search) {
+          search.removal->has_existing |= mesh_.has_edge(mesh_.origin(search.last), search.other);
+        });
   }
 
   /// Removes a vertex, if that is legal.
@@ -301,7 +298,7 @@ class VertexRemovals {
     [[nodiscard]] const VertexStar& star() const { return *removal.star; }
     [[nodiscard]] bool keeps_seams() const {
       if constexpr (kAttributes)
-        return self.state_.attributes->wedges().keeps_seams(self.mesh_, star().all_edges(), star().sides);
+        return self.state_.attributes->wedges().keeps_seams(self.mesh_, star().edges(), star().sides);
       return true;
     }
     [[nodiscard]] bool exceeds_error() const {
@@ -310,9 +307,9 @@ class VertexRemovals {
     }
     /// Fills the hole again if the mesh has a new edge already.
     [[nodiscard]] bool meets_link_condition() const {
-      if (is_tip_of_tetrahedron(self.mesh_, star().all_edges())) return false;
+      if (is_tip_of_tetrahedron(self.mesh_, star().edges())) return false;
       for_new_edges(star(), removal.triangles, [&](std::size_t a, std::size_t b) {  // made a moment ago?
-        const std::uint32_t p = star().target[a], q = star().target[b];
+        const std::uint32_t p = star().ring.vertex[a], q = star().ring.vertex[b];
         if (self.vertices_[p].has(VertexRecord::kTouched) && self.vertices_[q].has(VertexRecord::kTouched))
           removal.has_existing |= self.mesh_.has_edge(p, q);
       });
@@ -320,7 +317,7 @@ class VertexRemovals {
       return removal.error < kNone && !(removal.is_filled_again && exceeds_error());
     }
     [[nodiscard]] bool folds_over() const {
-      const std::span<const std::uint32_t> ring = std::span(star().target).first(star().neighbours());
+      const std::span<const std::uint32_t> ring = std::span(star().ring.vertex).first(star().neighbours());
       return detail::folds_over(self.vertices_, star().vertex, ring, star().closed, removal.triangles.all());
     }
     [[nodiscard]] bool meets_criteria() const {
@@ -361,11 +358,11 @@ class VertexRemovals {
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) { ++gained[a], ++gained[b]; });
     for (std::size_t i = 0; i < star.neighbours(); ++i)
       if (gained[i] > 1)
-        change_.edges_after = std::max(change_.edges_after, edges_at(star.target[i]) - 1 + gained[i]);
+        change_.edges_after = std::max(change_.edges_after, edges_at(star.ring.vertex[i]) - 1 + gained[i]);
     return state_.criteria->allow(change_);
   }
 
-  /// Of the mesh's own.
+  /// The number of edges at a vertex, without that to the apex.
   [[nodiscard]] std::size_t edges_at(std::uint32_t v) const {
     std::size_t edges = 0;
     std::uint32_t h = vertices_[v].leading;
@@ -383,18 +380,18 @@ class VertexRemovals {
     change_.inner_before.push_back(here);
     double length2 = 0;
     for (std::size_t i = 0; i < star.neighbours(); ++i) {
-      const DVec3 way = point_of(vertices_[star.target[i]].position) - here;
+      const DVec3 way = point_of(vertices_[star.ring.vertex[i]].position) - here;
       length2 += glm::dot(way, way);
     }
     change_.length2 = length2 / static_cast<double>(star.neighbours());
-    for (const std::uint32_t h : std::span(star.edge).first(star.edges))
+    for (const std::uint32_t h : star.edges())
       if (!mesh_.is_ghost(h)) change_.before.push_back(face_of(mesh_, h >> 2));
     const std::size_t first = first_face(star);
     for (const auto& corners : triangles.all()) {
       if (corners[2] == star.neighbours()) continue;  // closes the boundary
-      LocalChange::Face face{{}, star.edge[(first + change_.after.size()) % (star.edges - 1)] >> 2};
+      LocalChange::Face face{{}, star.ring.edge[(first + change_.after.size()) % (star.ring.size - 1)] >> 2};
       for (std::size_t i = 0; i < 3; ++i)
-        face.corner[i] = point_of(vertices_[star.target[corners[i]]].position);
+        face.corner[i] = point_of(vertices_[star.ring.vertex[corners[i]]].position);
       change_.after.push_back(face);
     }
     // An ear of the boundary leaves nothing in its place but the face beside it.
@@ -424,7 +421,7 @@ class VertexRemovals {
 
   /// Beyond the face between neighbour i and the next.
   [[nodiscard]] std::uint32_t beyond(const VertexStar& star, std::size_t i) const {
-    return mesh_.twin(CollapseMesh::next(star.edge[i]));
+    return mesh_.twin(CollapseMesh::next(star.ring.edge[i]));
   }
 
   [[nodiscard]] Removal removal_of(const VertexStar& star, std::size_t lane) const {
@@ -439,17 +436,17 @@ class VertexRemovals {
   [[nodiscard]] static Triangles triangles_of(const RetriangulationBatch& batch, std::size_t lane,
                                               const VertexStar& star) {
     Triangles triangles;
-    std::array<std::array<std::uint8_t, 2>, kMaxNeighbours> parts;
-    std::size_t left = 0;
+    std::array<std::array<std::uint8_t, 2>, kMaxNeighbours> gaps;
+    std::size_t gap_count = 0;
     const auto last = static_cast<std::uint8_t>(star.neighbours() - 1);
     if (!star.closed) triangles.of[triangles.count++] = {0, last, static_cast<std::uint8_t>(last + 1)};
-    if (last > 1) parts[left++] = {0, last};
-    while (left > 0) {
-      const auto [a, c] = parts[--left];
+    if (last > 1) gaps[gap_count++] = {0, last};
+    while (gap_count > 0) {
+      const auto [a, c] = gaps[--gap_count];
       const auto b = static_cast<std::uint8_t>(batch.third[RetriangulationBatch::pair(a, c)][lane]);
       triangles.of[triangles.count++] = {a, b, c};
-      if (b > a + 1) parts[left++] = {a, b};
-      if (c > b + 1) parts[left++] = {b, c};
+      if (b > a + 1) gaps[gap_count++] = {a, b};
+      if (c > b + 1) gaps[gap_count++] = {b, c};
     }
     if constexpr (kAttributes)
       if (star.sides.split)
@@ -462,12 +459,13 @@ class VertexRemovals {
   bool bar_existing(const VertexStar& star, const Triangles& triangles) {
     bool found = false;
     for_new_edges(star, triangles, [&](std::size_t a, std::size_t b) {
-      if (!mesh_.has_edge(star.target[a], star.target[b])) return;
+      if (!mesh_.has_edge(star.ring.vertex[a], star.ring.vertex[b])) return;
       other_.barred[RetriangulationBatch::pair(a, b)][0] = kNone;
       found = true;
     });
     return found;
   }
+
   void park(std::uint32_t v, Reason why) {
     ++state_.outcome.rejected[why];
     vertices_[v].source |= VertexRecord::kHasParked;
@@ -481,12 +479,12 @@ class VertexRemovals {
     for (std::size_t i = 0; i < 3; ++i) {
       const float share = removal.receivers.share[i];
       if (!(share > 0)) continue;
-      const std::uint32_t r = star.target[removal.receivers.neighbour[i]];
+      const std::uint32_t r = star.ring.vertex[removal.receivers.neighbour[i]];
       if (share > most) receiver = r;
       most = std::max(most, share);
       absorb(vertices_[r], gone, share);
       if constexpr (kAttributes)
-        state_.attributes->distribute_quadric(star.all_edges(), star.sides, removal.receivers.neighbour[i],
+        state_.attributes->distribute_quadric(star.edges(), star.sides, removal.receivers.neighbour[i],
                                               share);
     }
     if (gone.weight > 0)
@@ -497,11 +495,11 @@ class VertexRemovals {
         state_.outcome.attribute_error2 =
             std::max(state_.outcome.attribute_error2,
                      static_cast<double>(removal.of_attributes) / static_cast<double>(weight));
-      state_.attributes->fill_hole(star.all_edges(), star.neighbours(), star.sides, removal.triangles.all(),
+      state_.attributes->fill_hole(star.edges(), star.neighbours(), star.sides, removal.triangles.all(),
                                    first_face(star));
     }
     if (state_.criteria != nullptr && state_.criteria->bounds()) state_.criteria->keep(change_);
-    const auto faces = mesh_.fill_hole(star.all_edges(), removal.triangles.all(), first_face(star));
+    const auto faces = mesh_.fill_hole(star.edges(), removal.triangles.all(), first_face(star));
     gone.leading = VertexRecord::kGone | receiver;
     if (state_.keep_events) keep_faces(removal);
     if (state_.keep_events)
@@ -511,7 +509,7 @@ class VertexRemovals {
     state_.faces -= star.closed ? 2 : 1;
     --state_.vertices;
     ++state_.outcome.collapses;
-    const auto ring = std::span(star.target).first(star.neighbours());
+    const auto ring = std::span(star.ring.vertex).first(star.neighbours());
     for (const std::uint32_t r : ring) {
       revive(r);
       vertices_[r].source |= VertexRecord::kTouched;
@@ -535,7 +533,7 @@ class VertexRemovals {
     std::size_t taken = first_face(star);
     for (const auto& corners : removal.triangles.all()) {
       if (corners[2] == star.neighbours()) continue;  // closes the boundary
-      const std::uint32_t h = star.edge[taken % (star.edges - 1)] & ~3u;
+      const std::uint32_t h = star.ring.edge[taken % (star.ring.size - 1)] & ~3u;
       ++taken;
       auto& made = state_.outcome.changed_faces.emplace_back();
       made.step = step;
@@ -610,7 +608,7 @@ class VertexRemovals {
     receiver.weight += share * gone.weight;
   }
 
-  static constexpr std::size_t kSearched = 32;
+  static constexpr std::uint32_t kSearched = 33;
 
   DecimationState& state_;
   CollapseMesh& mesh_;
@@ -623,6 +621,7 @@ class VertexRemovals {
   LocalChange change_;  // that the removal changes which is looked at
   std::vector<Removal> due_;
   std::vector<Search> searches_;
+  RingWalks<Search> walks_;
   std::vector<std::uint32_t> touched_;
 };
 

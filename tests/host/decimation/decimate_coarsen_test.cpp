@@ -103,7 +103,7 @@ TEST_CASE("coarsening knows the ring of each vertex, and where that goes at the 
       const bool inside = std::ranges::all_of(ring, [&](std::uint32_t v) { return range.holds(v); });
       REQUIRE(batch.is_inside[i] == (inside ? 1u : 0u));
       REQUIRE(batch.has_best(i) == inside);
-      REQUIRE(batch.size[i] == ring.size());
+      REQUIRE(batch.ring[i].size == ring.size());
       // It comes again, and can be read on from any neighbour.
       for (std::size_t k = 0; k < ring.size() + CoarsenBatch::kMaxNeighbours; ++k) {
         const std::uint32_t h = batch.ring[i].edge[k];

@@ -521,12 +521,12 @@ TEST_CASE("the distance between the faces before and after a collapse", "[decima
     for (std::size_t k = split; k < corners; ++k) at_q.push_back(static_cast<std::uint32_t>(k));
     at_q.push_back(0);
     detail::CollapseNeighbourhood around;
-    const auto padded = [](std::vector<std::uint32_t>& some) {
-      const std::size_t size = some.size();
-      some.resize(size + detail::CollapseNeighbourhood::kBlock);
-      return std::span<const std::uint32_t>(some).first(size);
+    const auto padded = [](std::vector<std::uint32_t>& ids) {
+      const std::size_t size = ids.size();
+      ids.resize(size + detail::CollapseNeighbourhood::kBlock);
+      return std::span<const std::uint32_t>(ids).first(size);
     };
-    around.set(vertices, padded(at_p), padded(at_q));
+    around.set(vertices, {padded(at_p), {}}, {padded(at_q), {}});
     const auto floats = [](const DVec3& v) {
       return std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };

@@ -28,7 +28,7 @@ class AddressableHeap {
   /// The id must be present.
   [[nodiscard]] float priority(std::uint32_t id) const { return priority_of(entries_[slot_[id]]); }
 
-  /// Of the entry with the least (priority, id). The heap must not be empty.
+  /// The id and the priority of the entry with the least (priority, id). The heap must not be empty.
   [[nodiscard]] std::uint32_t top() const { return id_of(entries_.front()); }
   [[nodiscard]] float top_priority() const { return priority_of(entries_.front()); }
 

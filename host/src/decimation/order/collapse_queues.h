@@ -37,7 +37,7 @@ class LazyQueue {
   void reserve(std::size_t more) { queue_.reserve(more); }
   /// All that another holds.
   void absorb(LazyQueue& other) { queue_.absorb(other.queue_); }
-  /// Of what it holds, each to the queue that to(id) points to, if to any.
+  /// Moves each entry to the queue that to(id) points to; drops it if to none.
   template <class To>
   void distribute(To&& to) {
     queue_.distribute([&](std::uint32_t id) {

@@ -69,10 +69,10 @@ class MonotoneQueue {
     std::uint32_t end = ends_[floor_];
     while (count < out.size() && end != 0) {
       const std::uint32_t chunk = (end - 1) / kChunk * kChunk;
-      const std::size_t some = std::min<std::size_t>(end - chunk - 1, out.size() - count);
-      std::reverse_copy(words_.data() + end - some, words_.data() + end, out.data() + count);
-      end -= static_cast<std::uint32_t>(some);
-      count += some;
+      const std::size_t moved = std::min<std::size_t>(end - chunk - 1, out.size() - count);
+      std::reverse_copy(words_.data() + end - moved, words_.data() + end, out.data() + count);
+      end -= static_cast<std::uint32_t>(moved);
+      count += moved;
       if (end != chunk + 1) continue;
       end = words_[chunk];
       words_[chunk] = free_;

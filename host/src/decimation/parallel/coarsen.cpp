@@ -92,7 +92,7 @@ void RangeCoarsening::coarsen_batch() {
       deferred_.push_back(batch.vertex[i]);
   }
   for (const std::uint8_t i : std::span(due).first(due_count))
-    at_target_[i].walk(mesh_, mesh_.twin(batch.ring[i].edge[batch.best_of(i)]));
+    CoarsenBatch::gather(at_target_[i], mesh_, mesh_.twin(batch.ring[i].edge[batch.best_of(i)]));
   for (const std::uint8_t i : std::span(due).first(due_count)) attempt(i);
   for (const std::uint32_t v : touched_) vertices_[v].source &= ~VertexRecord::kTouched;
   touched_.clear();
@@ -103,29 +103,24 @@ void RangeCoarsening::attempt(std::size_t i) {
   const CoarsenBatch::Ring &at_p = batch.ring[i], &at_q = at_target_[i];
   const std::uint32_t best = batch.best_of(i), h = at_p.edge[best];
   const std::uint32_t p = batch.vertex[i], q = at_p.vertex[best];
-  const std::uint32_t size = at_q.size(mesh_.twin(h));
   const VertexRecord &vp = vertices_[p], &vq = vertices_[q];
-  if (size == 0 || ((vp.source | vq.source) & VertexRecord::kTouched) != 0 || state_.reached()) return;
-  if (!at_q.is_inside(range_)) {
+  if (at_q.size == 0 || ((vp.source | vq.source) & VertexRecord::kTouched) != 0 || state_.reached()) return;
+  if (!range_.holds_first<CoarsenBatch::kMaxNeighbours>(at_q.vertex)) {
     deferred_.push_back(p);
     return;
   }
-  const auto chosen = [](const std::array<std::uint32_t, 3 * CoarsenBatch::kMaxNeighbours>& words,
-                         std::size_t first,
-                         std::size_t count) { return EdgeRings::Ring(words).subspan(first, count); };
-  EdgeRings rings{chosen(at_p.vertex, best + 1, batch.size[i] - 1), chosen(at_q.vertex, 0, size - 1),
-                  chosen(at_p.edge, best + 1, batch.size[i] - 1), chosen(at_q.edge, 0, size - 1)};
   // The rings are as they were unless a vertex of theirs went.
-  if ((merger_.look_around(rings) & VertexRecord::kAbsorbed) != 0) return;
+  const CollapseNeighbourhood& around =
+      merger_.look_around(at_p.part(best + 1, at_p.size - 1), at_q.part(0, at_q.size - 1));
+  if ((around.flags() & VertexRecord::kAbsorbed) != 0) return;
   const DueEdge edge{
       h,
       batch.cost_of(i),
       EdgeBatch::kAtQ,
       {vq.position[0] - vp.position[0], vq.position[1] - vp.position[1], vq.position[2] - vp.position[2]}};
   const float cos_deviation = std::max(state_.limits.cos_deviation, kCosSmooth);
-  if (judge(EdgeMerger<false>::Change{{}, merger_, edge, p, q, rings, cos_deviation}) != Reason::kNone)
-    return;
-  merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q, rings), 0);
+  if (judge(EdgeMerger<false>::Change{{}, merger_, edge, p, q, cos_deviation}) != Reason::kNone) return;
+  merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q), 0);
   touched_.push_back(q);
   vertices_[p].source |= VertexRecord::kAbsorbed;
 }

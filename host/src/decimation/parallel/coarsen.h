@@ -1,4 +1,4 @@
-// What a surface that is far from its target loses at once.
+// Coarsening: bulk half-edge collapses without a queue, far from the target.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,28 @@
 
 namespace vkmesh::detail {
 
-/// Merges vertices into neighbours in the order of memory, with no queue, up to a cost: what goes first of so
-/// many leaves hardly a trace in the end. Each vertex goes to where that costs least, where the surface is
-/// smooth, and those that stay do not move; the collapses that follow place them anew, by all the planes.
+/// Collapses vertices of a range into neighbours, in the order of memory and up to a cost: far from the
+/// target the order of collapses hardly changes the result. Each vertex goes to the neighbour where that
+/// costs least, if the surface is smooth there. Vertices that stay do not move; later collapses place them by
+/// their quadrics.
 ///
-/// It keeps to a range. Where a vertex has a neighbour elsewhere, it neither goes nor takes another in: no
-/// face that has a corner elsewhere changes, and of a vertex next to those elsewhere nothing but where its
-/// fan begins. So several ranges can be coarsened side by side.
+/// A vertex with a neighbour outside the range neither goes nor absorbs another: no face with a corner
+/// outside changes, and of a vertex next to the outside nothing but its leading half-edge. So ranges can be
+/// coarsened side by side. They are ranges of numbers, not Partitions, because numbers follow a space-filling
+/// curve: who owns a vertex is known without a label, and the surface is partitioned only afterwards, when
+/// most of it has gone. Partitions must stay compact through many rounds, which ranges do not; their labels
+/// would have to be made for all vertices first.
 class RangeCoarsening {
  public:
-  /// No vertex goes at more than the cost `max_cost`. `state`: of this range, or of all.
+  /// No vertex goes at a higher cost than `max_cost`. `state` counts the removals of this range, or of all.
   RangeCoarsening(DecimationState& state, const VertexRange& range, float max_cost);
 
+  /// Tries all vertices of the range.
   void run_all();
-  /// Over these, in this order.
+  /// Tries these vertices, in this order.
   void run(std::span<const std::uint32_t> candidates);
-  /// Those that could not go because of what lies beyond the range; at the boundary, too.
+  /// Vertices that did not go because a neighbour, or one's neighbour, lies outside the range or at the
+  /// boundary.
   [[nodiscard]] std::span<const std::uint32_t> deferred() const { return deferred_; }
 
  private:
@@ -49,12 +55,12 @@ class RangeCoarsening {
   std::vector<std::uint32_t> deferred_;
 };
 
-/// What this share of the vertices would cost at most, by a sample; 0 where there are none.
+/// The cost that this share of the vertices does not exceed, by a sample; 0 where there are none.
 [[nodiscard]] float cost_of_share(const CollapseMesh& mesh, double share);
 
-/// Coarsens a large surface that is so far from its target that the order of what goes first hardly matters,
-/// where no error is promised: a history tells that order. O(n), on all cores; what goes does not depend on
-/// how many there are. Does nothing else.
+/// Coarsens a large surface if it is at least eight times as large as its target, and nothing depends on the
+/// order of collapses: no history, no error bound, no attributes or criteria. O(n), on all cores; the result
+/// does not depend on how many there are.
 void coarsen_if_far_from_target(DecimationState& state);
 
 }  // namespace vkmesh::detail

@@ -31,19 +31,16 @@ VKMESH_CLONES void find_best(const VertexRecord* vertices, const VertexRange& ra
     const VertexRecord& p = vertices[batch.vertex[i]];
     const CoarsenBatch::Ring& ring = batch.ring[i];
     const CoarsenBatch::Around& around = batch.around[i];
-    std::uint32_t least = CoarsenBatch::kNone, outside = 0, size = kMaxNeighbours;
+    std::uint32_t least = CoarsenBatch::kNone, outside = 0;
     for (std::uint32_t k = 0; k < kMaxNeighbours; ++k) {
       const Vector3 there = {around.words[0][k], around.words[1][k], around.words[2][k]};
       const float cost = p.quadric.value(minus(there, p.position)) + around.c[k];
       const std::uint32_t bits = std::bit_cast<std::uint32_t>(cost) / kMaxNeighbours * kMaxNeighbours + k;
       least = least < bits ? least : bits;
       outside |= range.holds(ring.vertex[k]) ? 0u : 1u;
-      const std::uint32_t last = ring.edge[k] == p.leading ? k : kMaxNeighbours;
-      size = size < last ? size : last;
     }
-    batch.size[i] = size < kMaxNeighbours ? size + 1 : 0;
     batch.is_inside[i] = 1 - outside;
-    batch.best[i] = outside != 0 || size == kMaxNeighbours ? CoarsenBatch::kNone : least;
+    batch.best[i] = outside != 0 || ring.size == 0 ? CoarsenBatch::kNone : least;
   }
 }
 
@@ -54,14 +51,14 @@ void CoarsenBatch::set(const CollapseMesh& mesh, std::span<const std::uint32_t> 
   const VertexRecord* const vertices = mesh.vertices.data();
   count = chosen.size();
   std::copy(chosen.begin(), chosen.end(), vertex.begin());
-  for (std::size_t i = 0; i < count; ++i) ring[i].walk(mesh, vertices[chosen[i]].leading);
+  for (std::size_t i = 0; i < count; ++i) gather(ring[i], mesh, vertices[chosen[i]].leading);
   gather_neighbours(vertices, *this);
   find_best(vertices, range, *this);
   for (std::size_t i = 0; i < count; ++i)
     for (auto* const words : {&ring[i].vertex, &ring[i].edge}) {
       std::array<std::uint32_t, kMaxNeighbours> first;
       std::copy_n(words->begin(), kMaxNeighbours, first.begin());
-      std::copy_n(first.begin(), kMaxNeighbours, words->begin() + size[i]);
+      std::copy_n(first.begin(), kMaxNeighbours, words->begin() + ring[i].size);
     }
 }
 

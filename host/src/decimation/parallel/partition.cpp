@@ -16,8 +16,8 @@ constexpr std::size_t kCells = 256;
 
 using Position = std::array<float, 3>;
 
-/// Of a grid of kCells³ over the cube [-1/2, 1/2]³ that holds the surface: the number of a cell along an
-/// axis, and where in it.
+/// The cell of a position along an axis, and where in it, in a grid of kCells³ over the cube [-1/2, 1/2]³
+/// that holds the surface.
 float along(const Position& position, std::size_t axis) {
   return (position[axis] + 0.5f) * kCells;
 }

@@ -22,27 +22,28 @@ inline void tag_interface_at(CollapseMesh& mesh, std::uint32_t v) {
   } while (h != start);
 }
 
-/// Which vertices one of several may remove, all of whose neighbours are of the same partition: faces at such
-/// vertices, and the vertices of these faces, nobody else reads or writes. All others are on the interface
-/// between partitions, and once there stay there: what the interface's collapses leave next to another
-/// partition has joined it.
+/// The vertices that one thread may remove: those whose one-ring lies in its partition. Nobody else reads or
+/// writes the faces at them, nor their corners. All other vertices are on the interface between partitions,
+/// and once there stay there: a vertex that collapses on the interface leave next to another partition joins
+/// it.
 class Partition {
  public:
   static constexpr std::uint8_t kInner = 0x80, kInterface = 0x7f;
 
-  /// Everywhere, and there are no partitions.
+  /// The whole surface, which is not partitioned.
   Partition() = default;
-  /// `labels`, for each vertex: its partition, and kInner unless it is on the interface. Of the partition
-  /// kInterface everything is, while nobody else is at work.
+  /// `labels`, for each vertex: its partition, and kInner unless it is on the interface. The partition
+  /// kInterface is everything, for one thread while no other is at work.
   Partition(std::vector<std::uint8_t>& labels, std::uint8_t partition)
       : labels_(labels.data()), partition_(partition) {}
 
+  /// Whether it is one of several, and not all of the surface.
   [[nodiscard]] bool is_bounded() const { return partition_ != kInterface; }
-  /// Of a partition.
+  /// Whether a vertex is inside a bounded partition.
   [[nodiscard]] bool holds(std::uint32_t v) const { return labels_[v] == (partition_ | kInner); }
 
   [[nodiscard]] bool is_interface() const { return labels_ != nullptr && !is_bounded(); }
-  /// Of the interface: a vertex has absorbed another, which had this ring.
+  /// Updates the interface when a vertex has absorbed another, whose ring this was.
   void merge(CollapseMesh& mesh, std::uint32_t gone, std::uint32_t kept,
              std::span<const std::uint32_t> ring) {
     const auto owner = [&](std::uint32_t v) { return labels_[v] & ~kInner; };
@@ -61,16 +62,16 @@ class Partition {
   std::uint8_t partition_ = kInterface;
 };
 
-/// Labels of vertices, for `partitions` compact partitions of about as many vertices each; a power of two
-/// below kInterface. O(n log partitions).
+/// Labels the vertices with `partitions` compact partitions of about equally many vertices, by a k-d tree. A
+/// power of two below kInterface. O(n log partitions).
 [[nodiscard]] std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partitions);
 
-/// What partition_kd has made of partitions: 2 i and 2 i + 1 become partition i again. `faces`: all that are
-/// left, ghosts too, which are marked anew. O(vertices + faces), of which the vertices take a byte each.
+/// Merges partitions 2 i and 2 i + 1 of partition_kd into partition i. `faces`: all that are alive, with
+/// ghosts; they are tagged anew. O(vertices + faces).
 void merge_pairs(CollapseMesh& mesh, std::span<std::uint8_t> labels, std::span<const std::uint32_t> faces);
 
-/// Tells a face which of its edges are at the interface, and returns for each who sees to it: a partition, or
-/// Partition::kInterface. No partition may be at work before all faces know.
+/// Tags the edges of a face that are at the interface, and returns for each the partition that it belongs to,
+/// or Partition::kInterface. No partition may be at work before all faces are tagged.
 [[gnu::always_inline]] inline std::array<std::uint8_t, 3> tag_interface(std::span<const std::uint8_t> labels,
                                                                         CollapseMesh::Face& face) {
   const std::array<std::uint8_t, 3> at = {labels[face.origin[0]], labels[face.origin[1]],

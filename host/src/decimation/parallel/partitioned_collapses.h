@@ -24,9 +24,9 @@
 
 namespace vkmesh::detail {
 
-/// Edge collapses, the cheapest first. A large surface is divided in partitions: in rounds, each partition
-/// does by itself what costs no more than the round's limit, and then one thread does what lies on the
-/// interface between them. What happens depends on the surface, and not on how many threads there are. With
+/// Edge collapses, the cheapest first. A large surface is partitioned: in each round the partitions collapse,
+/// side by side, the edges whose cost is at most the round's limit, and then one thread collapses those on
+/// the interface between them. The result depends on the surface, and not on the number of threads. With
 /// attributes or criteria a surface is one partition.
 template <class Placement, class Queue, bool kAttributes>
 class PartitionedCollapses {
@@ -102,7 +102,7 @@ class PartitionedCollapses {
     Share share;
   };
 
-  /// Of this thread, at work on what lies outside the partitions.
+  /// The worker of this thread, set to the edges outside the partitions.
   Worker& mine() {
     Worker& worker = workers_.local();
     worker.work_on(*interface_);
@@ -158,11 +158,11 @@ class PartitionedCollapses {
   [[nodiscard]] bool is_near() const {
     return state_.faces < 3 * state_.limits.faces || state_.vertices < 3 * state_.limits.vertices;
   }
-  /// Partitions must have some faces,
+  /// Whether partitions have too few faces left,
   [[nodiscard]] bool is_small() const {
     return state_.faces < state_.sizes.partition_faces / 16 * partitions_.size();
   }
-  /// and some to remove in a round.
+  /// or too few to remove in a round.
   [[nodiscard]] bool is_late() const {
     const std::size_t few = std::max(state_.sizes.partition_faces / 16, 4 * partitions_.size());
     return state_.faces - state_.limits.faces < few || state_.vertices - state_.limits.vertices < few / 2;

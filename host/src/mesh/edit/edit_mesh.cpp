@@ -264,11 +264,16 @@ Result<void> EditFaces::validate_connectivity(std::span<const std::uint32_t> lea
       if (face(h).tags != 0) return broken("a face that is gone has no tags", "face", h / 4);
       continue;
     }
-    const std::uint32_t p = origin(h), q = target(h), t = twin(h);
+    const std::uint32_t p = origin(h);
     if (p >= leading.size()) return broken("an origin is a vertex", "half-edge", h);
-    if (p == q) return broken("a face repeats no vertex", "face", h / 4);
+    if (p == target(h)) return broken("a face repeats no vertex", "face", h / 4);
     if ((p == apex_) != (is_ghost(h) && h % 4 == 2))
       return broken("the apex is the last corner of each ghost, and of no other face", "half-edge", h);
+    ++degree[p];
+  }
+  for (std::uint32_t h = 0; h < bound; ++h) {
+    if (h % 4 == 3 || !alive(h)) continue;
+    const std::uint32_t p = origin(h), q = target(h), t = twin(h);
     if (t >= bound || t % 4 == 3 || !alive(t)) return broken("a twin is a half-edge", "half-edge", h);
     if (t == h || twin(t) != h) return broken("twins are mutual", "half-edge", h);
     if (origin(t) != q) return broken("twins run in opposite directions", "half-edge", h);
@@ -276,7 +281,6 @@ Result<void> EditFaces::validate_connectivity(std::span<const std::uint32_t> lea
       edges.emplace_back(p, q);
       if (is_ghost(h) && is_ghost(t)) return broken("an edge has a face", "half-edge", h);
     }
-    ++degree[p];
   }
   std::ranges::sort(edges);
   if (const auto twice = std::ranges::adjacent_find(edges); twice != edges.end())

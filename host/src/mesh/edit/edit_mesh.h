@@ -288,8 +288,8 @@ class EditMesh : public EditFaces {
   /// new edge stands in an earlier triangle as one between neighbouring corners, and in a later one between
   /// the first and the last. The apex is the target of the last edge if of any. No new edge may be in the
   /// mesh. Triangles that close no boundary get the records of the faces of the edges from number `first` on,
-  /// then from 0 on; never that of the last edge. Their tags are 0. Returns the sources of the two faces that
-  /// went, kInvalid for a ghost. At most kMaxHoleEdges edges; O(edges).
+  /// then from 0 on; never that of the last edge; `first` is 0 on the boundary. Their tags are 0. Returns the
+  /// sources of the two faces that went, kInvalid for a ghost. At most kMaxHoleEdges edges; O(edges).
   std::array<std::uint32_t, 2> fill_hole(std::span<const std::uint32_t> edges,
                                          std::span<const std::array<std::uint8_t, 3>> triangles,
                                          std::size_t first = 0) {

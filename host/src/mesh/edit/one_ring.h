@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,7 +17,7 @@ namespace vkmesh::detail {
 struct OneRing {
   std::span<const std::uint32_t> vertices, edges;
 
-  [[nodiscard]] std::size_t size() const { return edges.size(); }
+  [[nodiscard]] std::size_t size() const { return vertices.size(); }
 };
 
 /// The step from a half-edge to the next around its origin: the vertex to which that leads, and itself.
@@ -42,6 +42,70 @@ struct FixedRing {
   [[nodiscard]] OneRing part(std::size_t first, std::size_t count) const {
     return {std::span(vertex).subspan(first, count), std::span(edge).subspan(first, count)};
   }
+};
+
+/// Walks around many vertices, one step of each in turn: their waits for memory overlap. What a walk gathers,
+/// or looks for, is a `Target` of the user's.
+template <class Target>
+class RingWalks {
+ public:
+  /// Walks begin anew; none takes more than so many steps.
+  void start(std::uint32_t max_steps) {
+    walks_.clear();
+    max_steps_ = max_steps;
+    next_ = kept_ = 0;
+    steps_ = 0;
+  }
+  /// Adds a walk around the origin of `from`, from the half-edge after it on and up to `last`.
+  void add(std::uint32_t from, std::uint32_t last, Target& target) {
+    walks_.push_back({from, last, &target});
+  }
+
+  /// Takes up to so many steps, all walks together. Calls visit(target, number of the step, the step, whether
+  /// it is the last) for each, which returns whether to go on, and give_up(target) for walks of too many
+  /// steps.
+  template <class Visit, class GiveUp>
+  void walk(const EditFaces& mesh, std::size_t steps, Visit&& visit, GiveUp&& give_up) {
+    const EditFaces::Face* const faces = mesh.faces();
+    while (steps > 0 && !walks_.empty()) {
+      const std::size_t end = steps < walks_.size() - next_ ? next_ + steps : walks_.size();
+      steps -= end - next_;
+      const Walk* walk = &walks_[next_];
+      const Walk* const stop = walk + (end - next_);
+      Walk* kept = &walks_[kept_];
+      const std::uint32_t number = steps_;
+      for (; walk != stop; ++walk) {
+        const auto [at, last, target] = *walk;
+        const RingStep step = RingStep::from(faces, at);
+        prefetch(&faces[step.edge >> 2]);
+        const bool goes_on = visit(*target, number, step, step.edge == last);
+        *kept = {step.edge, last, target};
+        kept += static_cast<std::size_t>(step.edge != last) & static_cast<std::size_t>(goes_on);
+      }
+      kept_ = static_cast<std::size_t>(kept - walks_.data());
+      next_ = end;
+      if (end < walks_.size()) return;
+      walks_.resize(kept_);
+      next_ = kept_ = 0;
+      if (++steps_ < max_steps_) continue;
+      for (const Walk& too_long : walks_) give_up(*too_long.target);
+      walks_.clear();
+    }
+  }
+  template <class Visit, class GiveUp>
+  void walk(const EditFaces& mesh, Visit&& visit, GiveUp&& give_up) {
+    walk(mesh, std::numeric_limits<std::size_t>::max(), visit, give_up);
+  }
+
+ private:
+  struct Walk {
+    std::uint32_t at, last;
+    Target* target;
+  };
+  std::vector<Walk> walks_;
+  // Of the walks those before `next_` have taken this step, and those before `kept_` take another.
+  std::size_t next_ = 0, kept_ = 0;
+  std::uint32_t steps_ = 0, max_steps_ = 0;
 };
 
 /// A ring of any size. Whole blocks of kBlock vertices can be read.
