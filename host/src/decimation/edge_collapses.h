@@ -51,15 +51,16 @@ class EdgeCollapses {
     Partition partition;
     Queue queue;
     std::uint32_t last = MonotoneQueue::kLast;  // bucket that is served
-    /// Half-edges of edges that others must see to, and vertices whose parked edges they must.
+    /// Half-edges of edges on the interface, and vertices there whose parked edges come back: for the
+    /// interface's share to take over.
     std::vector<std::uint32_t> forwarded, to_revive;
     /// What the square of a distance costs at least; 0 while points may move as they like.
     float cost_of_distance = 0;
     bool only_at_boundary = false;  // or at locked vertices
 
-    /// `all`: what has been done, in all partitions. Once few faces are left points must not move far for
-    /// what the planes say that costs. It depends on nothing but how many are left, and changes when they are
-    /// half as many: what waits is not put off again and again.
+    /// Sets cost_of_distance by how many faces are left in all partitions: once they are few, points must not
+    /// move far for what their quadrics say that costs. It changes only when half as many are left, so that
+    /// an edge is not put off again and again.
     void watch(const DecimationState& all) {
       const std::size_t share = std::bit_floor(all.mesh.face_count() / std::max<std::size_t>(all.faces, 1));
       const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
@@ -323,8 +324,8 @@ class EdgeCollapses {
     }
   }
 
-  /// Of what is taken a fifth is due, and a ring has six vertices or so. Constant
-  /// trip counts are predictable.
+  /// About a fifth of what is taken is due, and a ring has some six vertices. Constant trip counts are
+  /// predictable.
   static constexpr std::size_t kFetches = 12, kWalkSteps = 32;
 
   /// Tries the edges of the first batch, and in between brings on the others a little.

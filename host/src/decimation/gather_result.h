@@ -62,8 +62,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
       if (is[i]) sources.push_back(i);
     return sources;
   };
-  // Of each vertex the one that absorbed it, both of the input; in the end the one that stands for it, or
-  // itself.
+  // For each vertex of the input the one that absorbed it; in the end the one that stands for it, or itself.
   std::vector<std::uint32_t> by(n);
   const std::vector<std::uint32_t> alive = collect(n, [&](std::uint32_t v) {
     const VertexRecord& vertex = vertices[v];

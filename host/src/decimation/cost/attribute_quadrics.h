@@ -54,9 +54,9 @@ class AttributeQuadrics {
   /// The same for a point at one of the ends.
   void add_to_ends(EdgeBatch& batch, std::span<const std::uint32_t> edges, EndCosts& costs) const;
 
-  /// Of the geometric quadrics alone, with the point at p + x.
+  /// The cost by the geometric quadrics alone, with the point at p + x.
   [[nodiscard]] float geometric_cost(std::uint32_t p, std::uint32_t q, const Vector3& x) const;
-  /// Of the faces of all wedges of the vertex: the sum.
+  /// The summed weight of all wedges of the vertex.
   [[nodiscard]] float weight(std::uint32_t v) const;
 
   /// The collapse of `gone` into `kept` along h = gone → kept, to be told after both vertices' quadrics were
@@ -78,7 +78,7 @@ class AttributeQuadrics {
     wedges_.fill_hole(edges, neighbours, sides, triangles, first);
   }
 
-  /// Of the faces that are left, face f of which is face new_face[its source] of the result.
+  /// The attributes of the faces that are left; face f is face new_face[its source] of the result.
   [[nodiscard]] DecimatedAttributes gather(std::span<const std::uint32_t> faces,
                                            std::span<const std::uint32_t> new_face) const;
 
@@ -98,7 +98,7 @@ class AttributeQuadrics {
   void move(std::uint32_t wedge, const Vector3& by);
   /// The collapse of h as a step, with values as they are from then on; the kept vertex has moved, or not.
   void keep_change(std::uint32_t h, bool moved);
-  /// Of a wedge whose vertex was moved, or not.
+  /// Appends the values of a wedge whose vertex was moved, or not.
   void append_values(std::uint32_t wedge, bool moved, std::vector<std::vector<float>>& values) const;
   [[nodiscard]] Vector3 between(std::uint32_t p, std::uint32_t q) const;
 

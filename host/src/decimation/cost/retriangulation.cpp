@@ -34,7 +34,7 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr std::size_t pair(std::size_t a, std::size_t b) {
   return RetriangulationBatch::pair(a, b);
 }
-/// Of a < b < c: c is the slowest to rise, then b.
+/// The index of a triple a < b < c: c is the slowest to rise, then b.
 constexpr std::size_t triple(std::size_t a, std::size_t b, std::size_t c) {
   return c * (c - 1) * (c - 2) / 6 + pair(a, b);
 }
@@ -440,7 +440,7 @@ void judge_attributes(const RetriangulationBatch& batch, const Curve& curve, Wor
     }
 }
 
-// Of the triangulations that were chosen.
+// Sums the errors of attributes over the triangulations that were chosen.
 void sum_attributes(const RetriangulationBatch& batch, const Work& w, RetriangulationAttributes& attributes) {
   std::array<std::pair<std::size_t, std::size_t>, kMaxNeighbours> parts;
   for (std::size_t l = 0; l < kLanes; ++l) {

@@ -43,7 +43,7 @@ struct RetriangulationBatch {
   static constexpr std::size_t kPairs = kMaxNeighbours * (kMaxNeighbours - 1) / 2;
   using Lanes = FloatLanes<kLanes>;
 
-  /// Of neighbours a < b.
+  /// The index of a pair of neighbours a < b.
   [[nodiscard]] static constexpr std::size_t pair(std::size_t a, std::size_t b) {
     return b * (b - 1) / 2 + a;
   }
@@ -64,9 +64,9 @@ struct RetriangulationBatch {
   alignas(64) Lanes weight{};
   /// 0; infinite for a new edge that may not be made.
   alignas(64) std::array<Lanes, kPairs> barred{};
-  /// Of all lanes: a new triangle of aspect ratio R counts (1 - 1/R) times this, the weight and the mean of
-  /// the squared distances of the neighbours from v. It decides between triangulations, and is no part of the
-  /// error.
+  /// Weight of shape, for all lanes: a new triangle of aspect ratio R counts (1 - 1/R) times this, the weight
+  /// and the mean of the squared distances of the neighbours from v. It decides between triangulations, and
+  /// is no part of the error.
   float shape = 0;
 
   // Result.
@@ -97,7 +97,7 @@ struct RetriangulationAttributes {
     std::array<OnSide, 2> side;
   };
   std::vector<Component> components;
-  /// Of v's wedge on each side.
+  /// The weight of v's wedge on each side.
   alignas(64) std::array<Lanes, 2> weight{};
   /// What is left for the best values, as a quadric about v.
   alignas(64) std::array<Lanes, 6> a{};

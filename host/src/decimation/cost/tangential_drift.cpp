@@ -49,7 +49,7 @@ struct Lie {
   Vector place, p, q;
   std::int32_t at_p, faces;
 };
-// Of distances, squared, in one lane a face: none is larger than what stands here.
+// Upper bounds of squared distances, one lane a face.
 constexpr std::size_t kMostBounds = 32;
 using BoundLanes = std::array<float, kMostBounds>;
 struct SpokeBounds {

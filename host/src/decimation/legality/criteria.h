@@ -69,7 +69,7 @@ class Criteria {
   // it; the normals of the original's faces that were handed to it.
   std::vector<float> distances_;
   std::vector<Ball> normals_;
-  // Of the change that was allowed last.
+  // The same after the change that was allowed last.
   std::vector<float> distances_after_;
   std::vector<Ball> normals_after_;
   Overlay overlay_;

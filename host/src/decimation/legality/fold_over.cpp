@@ -142,15 +142,16 @@ bool folds_over(const CollapseNeighbourhood& neighbourhood, const Vector3& p, co
 bool folds_over(const LargeArray<VertexRecord>& vertices, std::uint32_t vertex,
                 std::span<const std::uint32_t> ring, bool closed,
                 std::span<const std::array<std::uint8_t, 3>> triangles) {
-  constexpr std::size_t kMost = CollapseMesh::kMaxHoleEdges;
+  constexpr std::size_t kMaxTriangles = CollapseMesh::kMaxHoleEdges;
   const std::size_t n = ring.size();
   const auto normal_of = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const Vector3& from = vertices[a].position;
     return cross(minus(vertices[b].position, from), minus(vertices[c].position, from));
   };
-  std::array<Vector3, kMost> normals;
-  std::array<double, kMost> squared;
-  std::array<std::array<std::uint8_t, kMost>, kMost> below;  // by a new edge the triangle before it
+  std::array<Vector3, kMaxTriangles> normals;
+  std::array<double, kMaxTriangles> squared;
+  std::array<std::array<std::uint8_t, kMaxTriangles>, kMaxTriangles>
+      below;  // by a new edge the triangle before it
   bool against = false;
   float after = 1;
   for (std::size_t t = closed ? 0 : 1; t < triangles.size(); ++t) {

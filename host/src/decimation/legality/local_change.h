@@ -47,7 +47,7 @@ inline LocalChange::Face face_of(const CollapseMesh& mesh, std::uint32_t record)
   return result;
 }
 
-/// Of the ends of the edge of h, which move to this place.
+/// Records the collapse of the edge of h, whose ends move to this place.
 void record_collapse(LocalChange& change, const CollapseMesh& mesh, std::uint32_t h,
                      const std::array<float, 3>& place);
 

@@ -26,7 +26,7 @@ struct SeamSides {
   [[nodiscard]] bool cross(std::size_t a, std::size_t b) const {
     return split && a > 0 && a < last && b > last;
   }
-  /// Of a triangle no edge of which crosses; `c` is its last corner.
+  /// The side of a triangle no edge of which crosses; `c` is its last corner.
   [[nodiscard]] std::size_t of(std::size_t c) const { return c <= last ? 0 : 1; }
 };
 
@@ -51,7 +51,7 @@ class Wedges {
   }
 
   [[nodiscard]] std::size_t count() const { return source_corner_.size(); }
-  /// Of the corner where h starts, which must not be of a ghost.
+  /// The wedge at the origin corner of h; h is of no ghost.
   [[nodiscard]] std::uint32_t operator[](std::uint32_t h) const { return of_[h]; }
   /// The first corner of the input that the wedge had.
   [[nodiscard]] std::uint32_t source_corner(std::uint32_t wedge) const { return source_corner_[wedge]; }

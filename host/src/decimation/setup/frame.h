@@ -22,8 +22,8 @@ struct Frame {
   double diagonal = 0;  // of the bounding box, in units of the input
 };
 
-/// Of the points that is_used(number), called on any threads, says are used. All points must be finite:
-/// kUnsuitable.
+/// The frame of the points for which is_used(number), called on any threads, is true. All points must be
+/// finite: else kUnsuitable.
 template <class Point, class IsUsed>
 Result<Frame> frame_of(std::span<const Point> points, IsUsed&& is_used) {
   struct Seen {
