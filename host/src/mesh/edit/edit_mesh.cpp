@@ -91,66 +91,6 @@ class EditFaces::Fan {
   std::vector<std::uint32_t> to_, from_, clockwise_, order_;
 };
 
-/// The same for a few half-edges around an inner vertex, unrolled for each number of them: a loop whose end
-/// is unpredictable costs more than its body.
-class EditFaces::SmallFan {
- public:
-  /// Sets the twins of the half-edges before these if they are found to form one closed fan, which they may
-  /// be even so.
-  bool join(LargeArray<Face>& faces, std::span<const std::uint32_t> leaving) {
-    switch (leaving.size()) {
-      case 3:
-        return join_exactly<3>(faces, leaving.data());
-      case 4:
-        return join_exactly<4>(faces, leaving.data());
-      case 5:
-        return join_exactly<5>(faces, leaving.data());
-      case 6:
-        return join_exactly<6>(faces, leaving.data());
-      case 7:
-        return join_exactly<7>(faces, leaving.data());
-      case 8:
-        return join_exactly<8>(faces, leaving.data());
-      default:
-        return false;
-    }
-  }
-
- private:
-  template <std::uint32_t kCount>
-  bool join_exactly(LargeArray<Face>& faces, const std::uint32_t* leaving) {
-    std::array<std::uint32_t, kMaxEdges> to, from, before, clockwise;
-    std::fill(from.begin() + kCount, from.end(), kInvalid);  // of no half-edge
-    for (std::uint32_t i = 0; i < kCount; ++i) {
-      const std::uint32_t h = leaving[i], corner = h & 3u;
-      const Face& face = faces[h >> 2];
-      to[i] = face.origin[EditFaces::kNextCorner[corner]];
-      from[i] = face.origin[EditFaces::kPreviousCorner[corner]];
-      before[i] = (h & ~3u) | EditFaces::kPreviousCorner[corner];
-      table_[from[i] % kTable] = static_cast<std::uint8_t>(i);
-    }
-    std::uint32_t different = 0;
-    for (std::uint32_t i = 0; i < kCount; ++i) {
-      clockwise[i] = table_[to[i] % kTable] % kMaxEdges;
-      different |= from[clockwise[i]] ^ to[i];
-    }
-    // All are found, and going on from one comes by all.
-    if (different != 0) return false;
-    std::uint32_t seen = 0, at = 0;
-    for (std::uint32_t k = 0; k < kCount; ++k) {
-      seen |= 1u << at;
-      at = clockwise[at];
-    }
-    if (seen != (1u << kCount) - 1) return false;
-    for (std::uint32_t i = 0; i < kCount; ++i)
-      faces[leaving[i] >> 2].twin[leaving[i] & 3u] = before[clockwise[i]];
-    return true;
-  }
-
-  static constexpr std::uint32_t kMaxEdges = 8, kTable = 256;
-  std::array<std::uint8_t, kTable> table_{};  // by the low bits of `from`
-};
-
 bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading,
                         std::uint32_t* const leaving) {
   constexpr std::size_t kGrain = 1 << 14;
@@ -198,14 +138,13 @@ bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& le
   const auto fans = parallel_sum<Fans>(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
     Fans found;
     Fan fan(most);
-    SmallFan small_fan;
     std::size_t first = begin == 0 ? 0 : ends[begin - 1];
     for (std::size_t v = begin; v < end && found.single; first = ends[v++]) {
       const std::size_t count = ends[v] - first;
       const std::uint32_t* const at = leaving + first;
       leading[v] = count == 0 ? kInvalid : at[count - 1];
       for (std::size_t i = 0; i < kUsual; ++i) prefetch(&faces_[at[kAhead + i] / 4]);
-      if (count == 0 || small_fan.join(faces_, {at, count})) continue;
+      if (count == 0) continue;
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t n = next(at[i]), p = previous(at[i]);
         fan.set(i, origin(n), origin(p));

@@ -113,7 +113,6 @@ class EditFaces {
   static constexpr std::size_t kScratchTail = 70;  // what a loop reads ahead
 
   class Fan;
-  class SmallFan;
   bool add_ghosts(std::span<const std::uint32_t> boundary);
 };
 
