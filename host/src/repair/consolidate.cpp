@@ -51,9 +51,10 @@ void flip_faces(IndexedFaceSet& mesh, const std::vector<std::uint8_t>& faces) {
   mesh.corner_channels = gather(mesh.corner_channels, source);
 }
 
-/// The faces of closed components of which some faces were flipped and lie inside out.
-std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail::Matching& matching,
-                                       const std::vector<std::uint8_t>& flipped) {
+/// The faces to flip once more, so that in each component the fewer are flipped; where they are as many,
+/// those of a closed component that lies inside out.
+std::vector<std::uint8_t> faces_to_flip_back(const IndexedFaceSet& mesh, const detail::Matching& matching,
+                                             const std::vector<std::uint8_t>& flipped) {
   if (std::find(flipped.begin(), flipped.end(), 1) == flipped.end()) return {};
   const std::size_t faces = mesh.face_count();
   const detail::FaceOfCorner face_of(mesh);
@@ -62,13 +63,15 @@ std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail:
   for (std::uint32_t h = 0; h < half_edges; ++h)
     if (matching.twin[h] != kInvalid) components.unite(face_of(h), face_of(matching.twin[h]));
 
-  std::vector<std::uint8_t> open(faces, 0), touched(faces, 0);
+  std::vector<std::uint8_t> open(faces, 0);
+  std::vector<std::uint32_t> size(faces, 0), flips(faces, 0);
   std::vector<double> volume(faces, 0);
   for (std::uint32_t h = 0; h < half_edges; ++h)
     if (matching.twin[h] == kInvalid) open[components.find(face_of(h))] = 1;
   for (std::uint32_t f = 0; f < faces; ++f) {
     const std::uint32_t root = components.find(f);
-    if (flipped[f]) touched[root] = 1;
+    ++size[root];
+    flips[root] += flipped[f];
     const auto corners = mesh.face(f);
     // Relative to a point of the component, so that surfaces far from zero keep their digits.
     const DVec3 origin(mesh.points[mesh.face(root)[0]]);
@@ -77,12 +80,13 @@ std::vector<std::uint8_t> inward_faces(const IndexedFaceSet& mesh, const detail:
       volume[root] += glm::dot(a, glm::cross(DVec3(mesh.points[corners[i]]) - origin,
                                              DVec3(mesh.points[corners[i + 1]]) - origin));
   }
-  std::vector<std::uint8_t> inward(faces, 0);
+  std::vector<std::uint8_t> back(faces, 0);
   for (std::uint32_t f = 0; f < faces; ++f) {
     const std::uint32_t root = components.find(f);
-    inward[f] = touched[root] && !open[root] && volume[root] < 0;
+    const std::uint32_t rest = size[root] - flips[root];
+    back[f] = flips[root] > rest || (flips[root] == rest && !open[root] && volume[root] < 0);
   }
-  return inward;
+  return back;
 }
 
 void drop_isolated_points(Consolidated& result) {
@@ -149,11 +153,11 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     result.source_face = std::move(repaired.source_face);
     report.non_manifold_vertices = std::max(report.non_manifold_vertices, report.split_points);
     matching = std::move(repaired.matching);
-    const std::vector<std::uint8_t> inward = inward_faces(result.face_set, matching, repaired.flipped);
-    if (std::find(inward.begin(), inward.end(), 1) != inward.end()) {
-      flip_faces(result.face_set, inward);
-      for (std::size_t f = 0; f < inward.size(); ++f) {
-        if (!inward[f]) continue;
+    const std::vector<std::uint8_t> back = faces_to_flip_back(result.face_set, matching, repaired.flipped);
+    if (std::find(back.begin(), back.end(), 1) != back.end()) {
+      flip_faces(result.face_set, back);
+      for (std::size_t f = 0; f < back.size(); ++f) {
+        if (!back[f]) continue;
         report.flipped_faces += repaired.flipped[f] ? std::size_t(-1) : std::size_t{1};
       }
       VKMESH_TRY(matching, match(result.face_set));

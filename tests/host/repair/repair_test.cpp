@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <random>
 #include <set>
 #include <string>
@@ -264,24 +265,40 @@ TEST_CASE("two cubes that share a wall stay two closed cubes", "[repair]") {
   CHECK(volume_of(result.face_set) == Approx(2.0));
 }
 
-TEST_CASE("faces are turned to agree, and closed components outward", "[repair]") {
-  IndexedFaceSet mesh = test::icosphere(2);
+TEST_CASE("the fewer faces are flipped to agree; of as many, so that a closed component faces outward",
+          "[repair]") {
+  const IndexedFaceSet sphere = test::icosphere(2);
+  const std::size_t faces = sphere.face_count();
   std::mt19937 random(11);
-  std::size_t turned = 0;
-  std::vector<std::uint8_t> was_turned;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    was_turned.push_back(random() % 3 != 0);  // Most of them: the larger part lies inside out.
-    if (!was_turned.back()) continue;
-    ++turned;
-    std::swap(mesh.corners[3 * f + 1], mesh.corners[3 * f + 2]);
+  for (const std::size_t turned : {faces / 3, faces / 2, 2 * faces / 3}) {
+    INFO(turned << " of " << faces);
+    std::vector<std::size_t> order(faces);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), random);
+    IndexedFaceSet mesh = sphere;
+    for (std::size_t i = 0; i < turned; ++i)
+      std::swap(mesh.corners[3 * order[i] + 1], mesh.corners[3 * order[i] + 2]);
+    mesh.corner_channels = {{"corner", 1, std::vector<std::uint32_t>(mesh.corners)}};
+    const Consolidated result = repaired(mesh);
+    const double volume = volume_of(result.face_set);
+    CHECK((2 * turned > faces ? volume < -4.0 : volume > 4.0));
+    CHECK(result.report.flipped_faces == std::min(turned, faces - turned));
+    CHECK(std::get<std::vector<std::uint32_t>>(result.face_set.corner_channels[0].values) ==
+          result.face_set.corners);
   }
-  REQUIRE(2 * turned > mesh.face_count());
-  mesh.corner_channels = {{"corner", 1, std::vector<std::uint32_t>(mesh.corners)}};
+}
+
+TEST_CASE("a cavity with one face turned stays a cavity", "[repair]") {
+  IndexedFaceSet mesh = test::cube();
+  const IndexedFaceSet outer = mesh;
+  for (const Vec3& p : outer.points) mesh.points.push_back(0.25f + 0.5f * p);
+  for (std::size_t c = 0; c < outer.corners.size(); c += 3)
+    for (const std::size_t k : {0u, 2u, 1u}) mesh.corners.push_back(8 + outer.corners[c + k]);
+  const double hollow = volume_of(mesh);
+  std::swap(mesh.corners[outer.corners.size()], mesh.corners[outer.corners.size() + 1]);
   const Consolidated result = repaired(mesh);
-  CHECK(volume_of(result.face_set) > 4.0);
-  CHECK(result.report.flipped_faces == turned);
-  CHECK(std::get<std::vector<std::uint32_t>>(result.face_set.corner_channels[0].values) ==
-        result.face_set.corners);
+  CHECK(result.report.flipped_faces == 1);
+  CHECK(volume_of(result.face_set) == Approx(hollow));
 }
 
 TEST_CASE("a consistent surface that faces inward is left so: it may be a room", "[repair]") {
