@@ -284,7 +284,7 @@ void add_simplify(CLI::App& app, Program& program) {
           "An attribute of points or corners that counts in the error. At weight 1 a change over its\n"
           "whole range counts as a move by the diagonal of the bounding box; default 0.01. More than\n"
           "one may be given; all: each. What corners have but for normals counts, with the default\n"
-          "weight, if it is not named; seams stay closed")
+          "weight, if it is not named; seams stay closed. A weight of 0 leaves it and its seams out")
       ->type_name("NAME[=WEIGHT]");
   command->add_flag("--index-only", options->index_only,
                     "Keep all points of the file as they are and where they are in it, and write fewer\n"

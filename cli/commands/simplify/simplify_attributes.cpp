@@ -94,6 +94,11 @@ Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh
   }
   for (Channel& channel : mesh.corner_channels) {
     std::optional<double> weight = weight_of(channel);
+    if (weight == 0.0) {
+      job.note("the attribute " + channel.name +
+               " of corners was left out, and its seams with it: its weight is 0");
+      continue;
+    }
     if (!weight && can_be_mixed(channel) && channel.name != "normal") weight = kDefaultWeight;
     if (!weight) {
       job.note("the attribute " + channel.name + " of corners was left out" +

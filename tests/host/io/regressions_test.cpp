@@ -101,7 +101,7 @@ const std::map<std::string, Expected> kMeshes = {
     {"vrml-inline.wrl", {3, 1, {"dropped.inline", "dropped.inline", "dropped.inline", "dropped.node"}}},
     {"vrml-inlined.wrl", {3, 1, {}}},
     {"vrml-name-within-an-ignored-node.wrl", {3, 1, {"dropped.node"}}},
-    {"vrml-prototypes.wrl", {32, 24, {}}},
+    {"vrml-prototypes.wrl", {32, 24, {"repaired.prototype"}}},
     {"vrml-shapes-by-measures.wrl",
      {8 + (32 * 15 + 2) + 33 + 64, 6 + 32 * 16 + 33 + 33, {"rounded.primitives"}}},
     {"xyz-points-with-colours.xyz", {3, 0, {}}},

@@ -156,7 +156,8 @@ TEST_CASE("VRML 2 content that is not kept is named", "[io][vrml]") {
       "Shape { geometry Box { } }\n" +
       face_set(kTwo) + "ROUTE T.fraction_changed TO P.set_fraction\n");
   CHECK(sentences(file.notes) ==
-        std::vector<std::string>{"2 EXTERNPROTO definitions ignored", "1 ROUTE statements ignored",
+        std::vector<std::string>{"2 instances of PROTOs expanded", "2 EXTERNPROTO definitions ignored",
+                                 "1 ROUTE statements ignored",
                                  "the inlined file 'c.wrl' ignored: this one was not read from a folder",
                                  "1 'IndexedLineSet' nodes ignored", "1 'Inline' nodes ignored",
                                  "1 'Script' nodes ignored", "1 'TimeSensor' nodes ignored",

@@ -137,6 +137,8 @@ class SceneParser {
     const auto note = [&](std::size_t count, const char* code, const char* what) {
       if (count > 0) notes.push_back({code, std::to_string(count) + " " + what + " ignored"});
     };
+    if (expanded_ > 0)
+      notes.push_back({"repaired.prototype", std::to_string(expanded_) + " instances of PROTOs expanded"});
     note(prototypes_, "dropped.externproto", "EXTERNPROTO definitions");
     note(routes_, "dropped.route", "ROUTE statements");
     note(connections_, "dropped.connection", "connections of fields");
@@ -324,6 +326,7 @@ class SceneParser {
       return source_.bad_line(type.data(),
                               "the instances of PROTOs make a scene out of proportion to the file");
     expansion_ -= prototype.length;
+    ++expanded_;
     std::vector<SceneField> given = prototype.fields;
     SceneNode instance;
     while (!scan_.accept('}')) {
@@ -497,7 +500,7 @@ class SceneParser {
   std::size_t visible_prototypes_ = kAll;           ///< Those of lower numbers may be used.
   const std::vector<SceneField>* given_ = nullptr;  ///< The fields of the instance that is expanded.
   std::uint64_t expansion_ = 64 * static_cast<std::uint64_t>(source_.bytes.size()) + (std::uint64_t{1} << 22);
-  std::size_t statements_ = 0, prototypes_ = 0, routes_ = 0, undefined_ = 0, connections_ = 0;
+  std::size_t statements_ = 0, prototypes_ = 0, routes_ = 0, undefined_ = 0, connections_ = 0, expanded_ = 0;
 };
 
 }  // namespace
