@@ -3,11 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 namespace vkmesh::detail {
 
@@ -40,21 +35,6 @@ inline void prefetch_for_later(const void* data, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += kCacheLine) __builtin_prefetch(begin + i, 0, 2);
 #else
   static_cast<void>(data), static_cast<void>(bytes);
-#endif
-}
-
-/// Copies floats past the caches where the processor can: what is not read again soon then takes no room
-/// there, and is not read before it is written over. Other threads may read it after the usual
-/// synchronization.
-inline void copy_past_caches(const float* from, std::size_t count, float* to) {
-#if defined(__SSE2__)
-  std::size_t i = 0;
-  while (i < count && reinterpret_cast<std::uintptr_t>(to + i) % 16 != 0) to[i] = from[i], ++i;
-  for (; i + 4 <= count; i += 4) _mm_stream_ps(to + i, _mm_loadu_ps(from + i));
-  for (; i < count; ++i) to[i] = from[i];
-  _mm_sfence();
-#else
-  std::memcpy(to, from, count * sizeof(float));
 #endif
 }
 

@@ -12,6 +12,7 @@
 #include "base/prefetch.h"
 #include "passes/pass_input.h"
 #include "passes/valence_groups.h"
+#include "simd/copy_past_caches.h"
 #include "simd/target_clones.h"
 
 namespace vkmesh {

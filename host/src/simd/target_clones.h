@@ -6,7 +6,6 @@
 // made.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define VKMESH_HAS_CLONES 1
 #define VKMESH_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define VKMESH_CLONES

@@ -1,5 +1,5 @@
 // Copies past the caches.
-#include "base/prefetch.h"
+#include "simd/copy_past_caches.h"
 
 #include <vector>
 
