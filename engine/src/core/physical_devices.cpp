@@ -94,7 +94,9 @@ PhysicalDevice judge(const InstanceFunctions& functions, VkPhysicalDevice handle
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, nullptr, {}, {}, {}, {}};
   VkPhysicalDeviceProperties2 more{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
   functions.vkGetPhysicalDeviceProperties2(handle, &more);
-  device.info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+  device.info.driver =
+      std::string(driver.driverName) + " " +
+      (driver.driverInfo[0] != 0 ? driver.driverInfo : version_text(properties.driverVersion));
   if (driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE) device.info.loop_rounds = 65535;
   device.crashes_on_pointer_bitcasts = driver.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
 
