@@ -156,9 +156,34 @@ std::vector<std::array<double, 3>> blurred(const Picture& picture) {
   return result;
 }
 
-/// Drivers place the samples of edges a little differently, and round colours by a step or two: a blurred
-/// pixel may differ by 24 of 255, and all of them by 1 on average. A shift by one pixel already fails that.
-void compare_with_reference(const Picture& picture, const std::string& name) {
+/// By how much pixels differ, of 255, when both pictures are blurred.
+struct Difference {
+  double mean = 0, largest = 0;
+};
+
+Difference difference(const Picture& picture, const Picture& expected) {
+  const auto a = blurred(picture), b = blurred(expected);
+  Difference found;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      found.mean += std::abs(a[i][c] - b[i][c]) / (3.0 * static_cast<double>(a.size()));
+      found.largest = std::max(found.largest, std::abs(a[i][c] - b[i][c]));
+    }
+  return found;
+}
+
+/// Drivers place the samples of edges a little differently, and round colours by a step or two. A shift by
+/// one pixel is more than this.
+constexpr Difference kTolerance{1.0, 24.0};
+
+/// For what is lines and points alone: SwiftShader draws them a shade darker than llvmpipe, which drew the
+/// references (by 2.3 on average and 25.1 at most). There, too, a shift by one pixel is more: 3.9 on average.
+Difference tolerance_of_lines() {
+  return is_swiftshader(test_context()) ? Difference{2.5, 28.0} : kTolerance;
+}
+
+void compare_with_reference(const Picture& picture, const std::string& name,
+                            const Difference& tolerance = kTolerance) {
   const std::filesystem::path reference = std::filesystem::path(VKMESH_REFERENCE_DIR) / (name + ".png");
   const std::filesystem::path actual = std::filesystem::temp_directory_path() / ("vkmesh_" + name + ".png");
   const auto differs = [&](const std::string& how) {
@@ -171,17 +196,10 @@ void compare_with_reference(const Picture& picture, const std::string& name) {
   const Picture expected = value(decode_png(std::as_bytes(std::span(bytes))));
   if (expected.width() != picture.width() || expected.height() != picture.height())
     return differs("has another size than its reference");
-  const auto a = blurred(picture), b = blurred(expected);
-  double sum = 0, largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum += std::abs(a[i][c] - b[i][c]);
-      largest = std::max(largest, std::abs(a[i][c] - b[i][c]));
-    }
-  const double mean = sum / (3.0 * static_cast<double>(a.size()));
-  if (mean > 1.0 || largest > 24.0)
-    differs("differs from its reference by " + std::to_string(mean) + " on average, " +
-            std::to_string(largest) + " at most");
+  const Difference found = difference(picture, expected);
+  if (found.mean > tolerance.mean || found.largest > tolerance.largest)
+    differs("differs from its reference by " + std::to_string(found.mean) + " on average, " +
+            std::to_string(found.largest) + " at most");
 }
 
 }  // namespace
@@ -304,7 +322,14 @@ TEST_CASE("flipped faces show the warning colour on request, and are lit like ot
   const std::vector<Vec3> normals = value(point_normals(sphere)), inward = value(point_normals(flipped));
   const DrawStyle plain, warning{.show_flipped = true};
   const Picture good = draw(sphere, plain, front_view(), {.normals = normals});
-  CHECK(same(draw(sphere, warning, front_view(), {.normals = normals}), good));
+  const Picture watched = draw(sphere, warning, front_view(), {.normals = normals});
+  if (is_swiftshader(test_context())) {
+    // Its pipelines for the two take other values at the silhouette.
+    CHECK(difference(watched, good).mean <= kTolerance.mean);
+    CHECK(difference(watched, good).largest <= kTolerance.largest);
+  } else {
+    CHECK(same(watched, good));
+  }
   const Picture bad = draw(flipped, warning, front_view(), {.normals = inward});
   CHECK(largest_difference(bad.at(64, 64), warning.flipped) <= 1);
   for (std::uint32_t y = 0; y < 128; ++y)
@@ -577,10 +602,10 @@ TEST_CASE("pictures look like their references", "[draw]") {
   };
   compare_with_reference(picture({}), "torus_shaded");
   compare_with_reference(picture({.mode = DrawMode::kFlat}), "torus_flat");
-  compare_with_reference(picture({.mode = DrawMode::kWireframe}), "torus_wireframe");
+  compare_with_reference(picture({.mode = DrawMode::kWireframe}), "torus_wireframe", tolerance_of_lines());
   compare_with_reference(picture({.mode = DrawMode::kShadedWire}), "torus_shaded_wire");
   compare_with_reference(picture({.mode = DrawMode::kSplats, .splat_scale = 0.5f}), "torus_splats");
-  compare_with_reference(picture({.mode = DrawMode::kPoints}), "torus_points");
+  compare_with_reference(picture({.mode = DrawMode::kPoints}), "torus_points", tolerance_of_lines());
   compare_with_reference(picture({.colors = DrawColors::kNormal}), "torus_normals");
   compare_with_reference(
       picture({.colors = DrawColors::kValue, .map = ColorMap::kDiverging, .range = {-2.0, 2.0}}),
