@@ -77,11 +77,9 @@ DVec3 unit_normal(const DVec3& p, const DVec3& q, const DVec3& r) {
   const double length = glm::length(n);
   return length > kDegenerate * (glm::dot(u, u) + glm::dot(v, v)) ? n / length : DVec3(0.0);
 }
-bool exists(const DVec3& normal) {
-  return normal != DVec3(0.0);
-}
+/// 1 where one has none.
 double cosine(const DVec3& m, const DVec3& n) {
-  return exists(m) && exists(n) ? glm::dot(m, n) : 1;
+  return m != DVec3(0.0) && n != DVec3(0.0) ? glm::dot(m, n) : 1;
 }
 
 /// A face at the vertex that a collapse leaves, of those in order around it.
@@ -96,8 +94,8 @@ bool folds_over(const std::vector<ChangedFace>& faces, double cos_deviation) {
   double before = 1, after = 1;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const ChangedFace &face = faces[i], &next = faces[(i + 1) % faces.size()];
-    const bool keeps = exists(face.after) && glm::dot(face.before, face.after) >= cos_deviation;
-    if (exists(face.before) && !keeps) return true;
+    const bool loses_area = face.before != DVec3(0.0) && face.after == DVec3(0.0);
+    if (loses_area || cosine(face.before, face.after) < cos_deviation) return true;
     after = std::min(after, cosine(face.after, next.after));
     if (next.follows) before = std::min(before, cosine(face.before, next.before));
   }
@@ -310,9 +308,7 @@ class Decimation {
     faces_.push_back(face);
     ++faces_left_;
   }
-  [[nodiscard]] DVec3 at(Vertex v) const {
-    return v == kGhost ? DVec3(std::numeric_limits<double>::quiet_NaN()) : result_.positions[v];
-  }
+  [[nodiscard]] DVec3 at(Vertex v) const { return v == kGhost ? DVec3(std::nan("")) : result_.positions[v]; }
   [[nodiscard]] auto faces_at_edge(Vertex p, Vertex q) const {
     return std::ranges::count_if(faces_at_[p], [&](std::size_t f) { return contains(faces_[f], q); });
   }
@@ -344,10 +340,10 @@ class Decimation {
       if (twice > 0) quadric_[p].add_plane(n / twice, at(p), 0.5 * twice);
       if (faces_at_edge(p, q) > 1) continue;
       if (curves.boundary == DecimateBoundary::kKept) locked_[p] = locked_[q] = true;
-      const DVec3 edge = at(q) - at(p), outward = glm::cross(edge, n);
-      const double length = glm::length(outward), weight = curves.boundary_weight * glm::dot(edge, edge);
-      if (curves.boundary == DecimateBoundary::kInShape && length > 0)
-        for (const Vertex v : {p, q}) quadric_[v].add_plane(outward / length, at(v), weight);
+      if (curves.boundary != DecimateBoundary::kInShape || !(twice > 0)) continue;
+      const DVec3 edge = at(q) - at(p), outward = glm::normalize(glm::cross(edge, n));
+      for (const Vertex v : {p, q})
+        quadric_[v].add_plane(outward, at(v), curves.boundary_weight * glm::dot(edge, edge));
     }
   }
 
@@ -387,9 +383,7 @@ class Decimation {
     if (locked_[v] || around.size() > Hole::kMostNeighbours) return {};
     std::vector<DVec3> places;
     for (const Vertex r : around) places.push_back(at(r));
-    const auto is_free = [&](std::size_t i, std::size_t j) {
-      return faces_at_edge(around[i], around[j]) == 0;
-    };
+    const auto is_free = [&](auto i, auto j) { return faces_at_edge(around[i], around[j]) == 0; };
     const Hole hole(quadric_[v], at(v), std::move(places), closed, cos_deviation_, is_free);
     if (!(hole.cost < kNone)) return {};
     Step step{hole.cost, v, kGhost, {}, {}, {}};
