@@ -188,7 +188,8 @@ void add_digest(CLI::App& app, Program& program) {
       "lines "
       "and fails (exit code 4)\nwhere one differs. Polygons are cut into triangles, and what is no manifold "
       "is "
-      "repaired first.\nFrom a checkout with its data, --check tests/digests.txt --device NAME says of any GPU "
+      "repaired first.\nFrom a checkout with its data, --check tests/digests.txt --device NAME says of any "
+      "GPU "
       "whether it keeps the promise;\nits report, pasted into an issue, puts the device on the list of those "
       "that were seen to.\n\n"
       "Example:\n  vkmesh digest data/cgal/meshes/elephant.off --device cpu");

@@ -14,8 +14,9 @@ VKMESH_PARAMS(CanaryParams) {
 
 #define VKMESH_CANARY_INPUTS 9
 #define VKMESH_CANARY_RESULTS 23
-// Times the number of a case: integers up to 2^31, most of which no float is equal to. Passes convert degrees of vertices,
-// which are smaller, since a triangle mesh has fewer than 2^32 half-edges, three a face; drivers may differ beyond.
+// Times the number of a case: integers up to 2^31, most of which no float is equal to. Passes convert degrees
+// of vertices, which are smaller, since a triangle mesh has fewer than 2^32 half-edges, three a face; drivers
+// may differ beyond.
 #define VKMESH_CANARY_UINT_STEP 4194309u
 
 #endif

@@ -93,7 +93,8 @@ struct Consolidated {
 ///    between which the thinnest wedges of solid lie, as where two solids touch along an edge; else into the
 ///    flattest pairs of opposite direction, the rest becoming boundary;
 /// 5. a point whose faces form several fans is given a copy at the same place for each but the first;
-/// 6. where as many faces of a closed component were flipped as were not, it is made to face outward (its volume
+/// 6. where as many faces of a closed component were flipped as were not, it is made to face outward (its
+/// volume
 ///    is positive); else the fewer are flipped, so that a cavity stays one.
 /// No position changes but by welding. A mesh that is an oriented manifold already passes unchanged, in
 /// O(n): edges are distributed to their smaller points by counting, and sorted within one point. Repairs
