@@ -410,7 +410,7 @@ class Decimation {
     std::vector<ChangedFace> faces;
     for (const auto& [v, other] : {std::pair(p, q), std::pair(q, p)}) {
       std::vector<Vertex> around = ring(v);
-      std::ranges::rotate(around, std::ranges::find(around, other));
+      std::rotate(around.begin(), std::ranges::find(around, other), around.end());
       for (std::size_t i = 1; i + 1 < around.size(); ++i) {
         const DVec3 a = at(around[i]), b = at(around[i + 1]);
         faces.push_back({unit_normal(at(v), a, b), unit_normal(x, a, b), i > 1});

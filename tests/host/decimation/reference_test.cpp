@@ -46,7 +46,7 @@ Remains remains(const std::vector<std::uint32_t>& vertex_map, const Corners& cor
       face[i] = least.at(corners[c + i]);
       result.points[face[i]] = DVec3(points[corners[c + i]]);
     }
-    std::ranges::rotate(face, std::ranges::min_element(face));
+    std::rotate(face.begin(), std::ranges::min_element(face), face.end());
     result.faces.insert(face);
   }
   return result;

@@ -106,7 +106,7 @@ struct Model {
   [[nodiscard]] std::set<Triangle> canonical() const {
     std::set<Triangle> all;
     for (Triangle t : triangles) {
-      std::ranges::rotate(t, std::ranges::min_element(t));
+      std::rotate(t.begin(), std::ranges::min_element(t), t.end());
       REQUIRE(all.insert(t).second);
     }
     return all;
@@ -304,7 +304,7 @@ class Editor {
     } while (h != mesh.vertices[v].leading);
     const auto outer = std::ranges::find(edges, mesh.apex(), [&](std::uint32_t e) { return mesh.target(e); });
     const bool closed = outer == edges.end();
-    if (!closed) std::ranges::rotate(edges, outer + 1);
+    if (!closed) std::rotate(edges.begin(), outer + 1, edges.end());
     const std::size_t neighbours = edges.size() - (closed ? 0 : 1);
     if (edges.size() > Mesh::kMaxHoleEdges || neighbours < (closed ? 3 : 2)) return false;
     const auto at = [&](std::size_t i) { return mesh.target(edges[i]); };
