@@ -281,13 +281,14 @@ TEST_CASE("decimation: the order by criteria is the greedy one", "[decimate]") {
   };
   const auto cost = [&](std::uint32_t a, std::uint32_t b) {
     const DVec3 way = places[a] - places[b];
-    const DVec3 kept = error_at(places[a], a, b) < error_at(places[b], a, b) ? places[a] : places[b];
+    const bool keeps_a = error_at(places[a], a, b) < error_at(places[b], a, b);
+    const std::uint32_t kept = keeps_a ? a : b, gone = keeps_a ? b : a;
     double worst = 0;
     for (const Face& f : faces) {
       const auto holds = [&](std::uint32_t v) { return f[0] == v || f[1] == v || f[2] == v; };
-      if (holds(a) == holds(b)) continue;  // goes, or stays as it is
+      if (!holds(gone) || holds(kept)) continue;  // stays as it is, or goes
       std::array<DVec3, 3> p;
-      for (std::size_t i = 0; i < 3; ++i) p[i] = f[i] == a || f[i] == b ? kept : places[f[i]];
+      for (std::size_t i = 0; i < 3; ++i) p[i] = places[f[i] == gone ? kept : f[i]];
       double longest = 0;
       for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, glm::distance(p[i], p[(i + 1) % 3]));
       const double height = glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / longest;
