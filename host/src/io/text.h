@@ -20,7 +20,7 @@ namespace vkmesh::detail {
 class TextCursor {
  public:
   /// `comment` begins a comment that runs to the end of its line, where it begins a line or stands behind a
-  /// blank: never within a word or number. 0 for none.
+  /// blank or the digits of a number: never within a word. 0 for none.
   explicit TextCursor(std::string_view text, char comment = 0)
       : begin_(text.data()), at_(text.data()), end_(text.data() + text.size()), comment_(comment) {}
 
@@ -127,10 +127,11 @@ class TextCursor {
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
   static bool ends_line(char c) { return c == '\n' || c == '\r'; }
-  bool is_separator() const { return at_ == end_ || is_blank(*at_) || ends_line(*at_); }
+  bool is_separator() const { return at_ == end_ || is_blank(*at_) || ends_line(*at_) || at_comment(); }
+  static bool is_digit(char c) { return c >= '0' && c <= '9'; }
   bool at_comment() const {
     return comment_ != 0 && at_ != end_ && *at_ == comment_ &&
-           (at_ == begin_ || is_blank(at_[-1]) || ends_line(at_[-1]));
+           (at_ == begin_ || is_blank(at_[-1]) || ends_line(at_[-1]) || is_digit(at_[-1]));
   }
 
   /// "1.#INF", "-1.#IND", "1.#QNAN00": what the runtime library of Visual C++ prints for numbers that are

@@ -111,7 +111,7 @@ TEST_CASE("PLY channels that cannot be written are named", "[io][ply]") {
   mesh.point_channels = {{"two words", 1, ramp<float>(12, 1)},
                          {"x", 1, ramp<float>(12, 1)},
                          {"color", 3, std::vector<float>(36, 0.5f)}};
-  mesh.corner_channels = {{"uv", 2, ramp<float>(120, 1)}};
+  mesh.corner_channels = {{"heat", 2, ramp<float>(120, 1)}};
   TemporaryFolder folder;
   const auto notes = write_mesh(folder.path() / "a.ply", mesh,
                                 write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
@@ -120,7 +120,7 @@ TEST_CASE("PLY channels that cannot be written are named", "[io][ply]") {
         std::vector<std::string>{"point channel 'two words' left out: its name is not one word",
                                  "point channel 'x' left out: its property names are taken",
                                  "point channel 'color' rounded to 8 bits",
-                                 "corner channel 'uv' left out: PLY has no attributes of corners"});
+                                 "corner channel 'heat' left out: PLY holds uv of corners"});
   const IndexedFaceSet back = parse(read_bytes(folder.path() / "a.ply"), "a.ply");
   REQUIRE(back.point_channels.size() == 1);
   CHECK(std::get<std::vector<std::uint8_t>>(back.point_channels[0].values) ==
@@ -186,7 +186,7 @@ TEST_CASE("PLY properties become channels", "[io][ply]") {
 TEST_CASE("PLY content that is not kept is passed over and named", "[io][ply]") {
   const std::string header =
       " 1.0\nelement camera 2\nproperty list uchar short view\nproperty int id\nelement face 2\n"
-      "property list uchar float texcoord\nproperty uchar part\nproperty list ushort short vertex_indices\n"
+      "property list uchar float texnumbers\nproperty uchar part\nproperty list ushort short vertex_indices\n"
       "element nothing 1000000000000\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
       "z\n"
       "property list int double marks\nelement edge 1\nproperty int vertex1\nproperty int "
@@ -197,7 +197,7 @@ TEST_CASE("PLY content that is not kept is passed over and named", "[io][ply]") 
   expected.face_offsets = {0, 3, 7};
   expected.face_channels = {{"part", 1, std::vector<std::uint8_t>{5, 6}}};
   const std::vector<std::string> notes = {
-      "2 of element 'camera' ignored", "list property 'texcoord' of element 'face' ignored",
+      "2 of element 'camera' ignored", "list property 'texnumbers' of element 'face' ignored",
       "1000000000000 of element 'nothing' ignored", "list property 'marks' of element 'vertex' ignored",
       "1 of element 'edge' ignored"};
 

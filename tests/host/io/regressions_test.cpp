@@ -84,8 +84,8 @@ const std::map<std::string, Expected> kMeshes = {
     {"ply-header-that-ends-with-cr-lf.ply", {3, 1, {}}},
     {"ply-integers-with-a-point.ply", {3, 1, {}}},
     {"ply-point-not-finite-without-face.ply", {3, 1, {"dropped.nonfinite_points"}}},
-    {"ply-triangle-strips.ply", {5, 2, {}}},
-    {"ply-trillion-elements-of-nothing.ply", {3, 1, {"dropped.element"}}},
+    {"ply-triangle-strips.ply", {5, 3, {}}},
+    {"ply-trillion-elements-of-nothing.ply", {1, 0, {"dropped.element"}}},
     {"ply-uv-of-corners.ply", {4, 2, {"partial.uv"}}},
     {"stl-attribute-bytes-behind-facets.stl", {3, 2, {"dropped.attribute_bytes"}}},
     {"stl-bytes-behind-the-last-facet.stl", {3, 1, {"dropped.trailing_bytes"}}},
@@ -177,7 +177,7 @@ TEST_CASE("what files deviate in leaves the rest as it is", "[io][regressions]")
   const IndexedFaceSet without = read("ply-point-not-finite-without-face.ply");
   CHECK(without.corners == Corners{2, 1, 0});
   CHECK(channel_of(without.point_channels, "id").values == ChannelValues(std::vector<std::int16_t>{2, 3, 5}));
-  CHECK(read("ply-triangle-strips.ply").corners == Corners{0, 1, 2, 3, 1, 4});
+  CHECK(read("ply-triangle-strips.ply").corners == Corners{0, 1, 2, 2, 1, 3, 3, 1, 4});
   CHECK(channel_of(read("ply-uv-of-corners.ply").corner_channels, "uv").values ==
         ChannelValues(Floats{0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0}));
   CHECK(read("off-face-over-three-lines.off").corners == Corners{3, 2, 1, 0, 0, 1, 2});

@@ -183,6 +183,12 @@ struct Asset {
   std::vector<std::string_view> buffers;
   std::deque<std::vector<unsigned char>> owned;  ///< The bytes of those buffers that lie outside the file.
   std::vector<std::string> materials;
+
+  struct Skin {
+    std::vector<int> joints;
+    int inverse_bind_matrices = -1;
+  };
+  std::vector<Skin> skins;  ///< tinygltf asks for matrices, which the specification leaves out at will.
 };
 
 class AssetReader {
@@ -207,6 +213,7 @@ class AssetReader {
     VKMESH_CHECK(fetch_buffers(document, to));
     if (const Json* materials = member(document, "materials"); materials != nullptr && materials->is_array())
       for (const Json& material : *materials) to.materials.push_back(string_member(material, "name"));
+    read_skins(document, to);
     note_ignored(document);
     return read_structure(document, to.model);
   }
@@ -310,6 +317,23 @@ class AssetReader {
     return {};
   }
 
+  /// What is malformed in a skin counts only where a mesh uses it: a joint of -1 is none.
+  static void read_skins(const Json& document, Asset& to) {
+    const Json* skins = member(document, "skins");
+    if (skins == nullptr || !skins->is_array()) return;
+    const auto number = [](const Json* value) {
+      return value != nullptr && value->is_number_unsigned() && value->get<std::uint64_t>() < 0x7fffffffu
+                 ? static_cast<int>(value->get<std::uint64_t>())
+                 : -1;
+    };
+    for (const Json& skin : *skins) {
+      Asset::Skin& made = to.skins.emplace_back();
+      made.inverse_bind_matrices = number(member(skin, "inverseBindMatrices"));
+      if (const Json* joints = member(skin, "joints"); joints != nullptr && joints->is_array())
+        for (const Json& joint : *joints) made.joints.push_back(number(&joint));
+    }
+  }
+
   void note_ignored(const Json& document) {
     const auto note = [&](const char* key, const char* code, const char* what) {
       if (const std::size_t count = array_size(document, key); count > 0)
@@ -322,8 +346,7 @@ class AssetReader {
 
   Result<void> read_structure(Json& document, tinygltf::Model& to) const {
     Json kept = Json::object();
-    for (const char* key :
-         {"asset", "scene", "scenes", "nodes", "meshes", "skins", "accessors", "bufferViews"})
+    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews"})
       if (const auto it = document.find(key); it != document.end()) kept[key] = std::move(*it);
     const std::map<std::pair<std::size_t, std::size_t>, int> zeros = take_indices_without_view(kept);
     const std::string text = kept.dump();
@@ -617,6 +640,7 @@ class SceneReader {
       : source_(source),
         model_(asset.model),
         materials_(asset.materials),
+        skins_(asset.skins),
         notes_(notes),
         accessors_(source, asset) {}
 
@@ -699,15 +723,15 @@ class SceneReader {
   /// A mesh that a skin poses: where its joints are, and not where its node is (specification, 3.7.3.3).
   Result<void> add_skinned(const tinygltf::Node& node) {
     const std::string name = "skin " + std::to_string(node.skin);
-    if (static_cast<std::size_t>(node.skin) >= model_.skins.size())
-      return bad(name + " of " + std::to_string(model_.skins.size()) + " is named");
-    const tinygltf::Skin& skin = model_.skins[static_cast<std::size_t>(node.skin)];
+    if (static_cast<std::size_t>(node.skin) >= skins_.size())
+      return bad(name + " of " + std::to_string(skins_.size()) + " is named");
+    const Asset::Skin& skin = skins_[static_cast<std::size_t>(node.skin)];
     std::vector<double> inverse;
-    if (skin.inverseBindMatrices >= 0) {
-      VKMESH_TRY(const tinygltf::Accessor* const accessor, accessors_.accessor(skin.inverseBindMatrices));
+    if (skin.inverse_bind_matrices >= 0) {
+      VKMESH_TRY(const tinygltf::Accessor* const accessor, accessors_.accessor(skin.inverse_bind_matrices));
       if (accessor->type != TINYGLTF_TYPE_MAT4 || accessor->count < skin.joints.size())
         return bad(name + " has no inverse bind matrix for each joint");
-      VKMESH_TRY(inverse, accessors_.components<double>(skin.inverseBindMatrices));
+      VKMESH_TRY(inverse, accessors_.components<double>(skin.inverse_bind_matrices));
     }
     joints_.clear();
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
@@ -1016,6 +1040,7 @@ class SceneReader {
   const Source& source_;
   const tinygltf::Model& model_;
   const std::vector<std::string>& materials_;
+  const std::vector<Asset::Skin>& skins_;
   Notes& notes_;
   AccessorReader accessors_;
   Place place_{dmat4(1), dmat3(1), false, true};

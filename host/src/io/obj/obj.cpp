@@ -394,7 +394,10 @@ class ObjReader {
   void keep(Attribute& attribute, IndexedFaceSet& mesh) {
     const std::string lines = std::string("'") + attribute.keyword + "' lines";
     if (attribute.of_corner.empty()) {
-      if (attribute.count() > 0)
+      // A cloud has as many as vertices, in their order.
+      if (mesh.corners.empty() && attribute.count() > 0 && attribute.count() == mesh.points.size())
+        mesh.point_channels.push_back({attribute.channel, attribute.components, std::move(attribute.values)});
+      else if (attribute.count() > 0)
         file_.notes.push_back(
             {"dropped.unused_" + attribute.channel,
              std::to_string(attribute.count()) + " " + lines + " ignored: no corner of a face names one"});

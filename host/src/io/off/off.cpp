@@ -325,7 +325,8 @@ class OffReader {
           if (text_.line_done() && broken_line_ == nullptr) broken_line_ = line;
           text_.skip_to_content();
           if (!text_.number(index))
-            return expected("corner " + std::to_string(k) + " of face " + std::to_string(f));
+            return source_.bad_line(line, "expected corner " + std::to_string(k) + " of face " +
+                                              std::to_string(f) + ", found " + text_.found());
         }
         if (index < 0 || static_cast<std::uint64_t>(index) >= points_)
           return source_.bad_line(line, "face " + std::to_string(f) + " names vertex " +
