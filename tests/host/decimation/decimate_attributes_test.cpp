@@ -982,15 +982,14 @@ TEST_CASE("Vertices at one place stay apart without attributes, and locks hold",
   for (const std::uint32_t v : {25u * 3, 24u + 25 * 3, 12u + 25 * 10, b.indices[300], b.indices[301],
                                 b.indices[302], b.indices[1202], b.indices[1200]})
     CHECK(used.count(v) == 1);
-  for (std::size_t i = 0; i < result->indices.size();
-       i += 3) {  // u, from 0 to 1, never runs back over the seam
+  for (std::size_t i = 0; i < result->indices.size(); i += 3) {  // u never runs back over the seam
     float low = 1, high = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const float u = b.values[2 * result->indices[i + k]];
       low = std::min(low, u);
       high = std::max(high, u);
     }
-    CHECK(high - low < 0.75f);
+    CHECK(high - low < 0.6f);
   }
   const auto code = [&](const DecimateOptions& o, std::span<const std::uint32_t> indices) {
     return decimate_index_buffer(b.points, indices, o).error().code;
