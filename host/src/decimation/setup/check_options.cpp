@@ -33,7 +33,7 @@ Result<void> check(const DecimateTargets& target) {
 Result<void> check(const DecimateWeights& weights) {
   const auto all = {weights.quadric, weights.density, weights.aspect_ratio, weights.normals};
   if (!std::ranges::all_of(all, is_weight)) return usage("each of weights must be at least 0 and finite");
-  if (std::ranges::max(all) == 0) return usage("some criterion needs a weight above 0");
+  if (std::max(all) == 0) return usage("some criterion needs a weight above 0");
   return {};
 }
 
