@@ -28,10 +28,11 @@ Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& me
     VKMESH_CHECK(prepare_positions(positions, prepared));
     VKMESH_TRY(const detail::BilateralGrid grid, detail::bilateral_grid(mesh, prepared, options));
 
-    std::vector<std::uint32_t> face_order(mesh.face_count()), vertex_order(grid.used.size()),
-        cells(grid.used.size());
-    for (std::size_t i = 0; i < face_order.size(); ++i) face_order[i] = grid.faces.index(i);
-    for (std::size_t i = 0; i < vertex_order.size(); ++i) vertex_order[i] = grid.used[grid.vertices.index(i)];
+    std::vector<std::uint32_t> face_of_place(mesh.face_count()), vertex_of_place(grid.used.size()),
+        cell_of_place(grid.used.size());
+    for (std::size_t i = 0; i < face_of_place.size(); ++i) face_of_place[i] = grid.faces.index(i);
+    for (std::size_t i = 0; i < vertex_of_place.size(); ++i)
+      vertex_of_place[i] = grid.used[grid.vertices.index(i)];
     std::vector<std::uint32_t> near_offsets = {0}, near_ends, far_offsets = {0}, far_ends;
     const auto add = [&](std::uint64_t key, std::uint64_t reach, std::vector<std::uint32_t>& offsets,
                          std::vector<std::uint32_t>& ends) {
@@ -54,16 +55,16 @@ Result<NearbyFaces> NearbyFaces::create(Context& context, const HalfEdgeMesh& me
     };
     for (std::size_t cell = 0; cell < grid.vertices.cell_count(); ++cell) {
       for (std::size_t i = grid.vertices.cell_begin(cell); i < grid.vertices.cell_end(cell); ++i)
-        cells[i] = static_cast<std::uint32_t>(cell);
+        cell_of_place[i] = static_cast<std::uint32_t>(cell);
       add(grid.vertices.key_of_cell(cell), 1, near_offsets, near_ends);
       add(grid.vertices.key_of_cell(cell), 2, far_offsets, far_ends);
       VKMESH_CHECK(require_few(far_offsets, far_ends));
     }
     const auto fill = [&](DeviceArray<std::uint32_t>& array, const std::vector<std::uint32_t>& values,
                           const char* name) { return array.upload(context, values, name); };
-    VKMESH_CHECK(fill(nearby.face_order, face_order, "faces by place"));
-    VKMESH_CHECK(fill(nearby.vertex_order, vertex_order, "vertices by place"));
-    VKMESH_CHECK(fill(nearby.cells, cells, "cells of vertices"));
+    VKMESH_CHECK(fill(nearby.face_order, face_of_place, "faces by place"));
+    VKMESH_CHECK(fill(nearby.vertex_order, vertex_of_place, "vertices by place"));
+    VKMESH_CHECK(fill(nearby.cells, cell_of_place, "cells of vertices"));
     VKMESH_CHECK(fill(nearby.near.offsets, near_offsets, "near offsets"));
     VKMESH_CHECK(fill(nearby.near.ends, near_ends, "near ranges"));
     VKMESH_CHECK(fill(nearby.far.offsets, far_offsets, "far offsets"));
