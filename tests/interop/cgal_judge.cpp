@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -43,11 +44,13 @@ struct Soup {
   std::vector<Kernel::Point_3> points;
   std::vector<std::vector<std::size_t>> polygons;
 
-  /// Coordinates as vkmesh keeps them.
-  bool read(const std::string& file) {
+  /// Coordinates as vkmesh keeps them: floats relative to an offset.
+  bool read(const std::string& file, const std::array<double, 3>& offset = {}) {
     if (!CGAL::IO::read_polygon_soup(file, points, polygons)) return false;
-    for (auto& p : points)
-      p = {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+    const auto kept = [&](double x, std::size_t axis) {
+      return static_cast<double>(static_cast<float>(x - offset[axis])) + offset[axis];
+    };
+    for (auto& p : points) p = {kept(p.x(), 0), kept(p.y(), 1), kept(p.z(), 2)};
     return true;
   }
 };
@@ -141,14 +144,24 @@ Json judge(const Soup& soup) {
   return said;
 }
 
+/// What `vkmesh info` says that positions are kept relative to.
+std::array<double, 3> offset_of(const Json& info) {
+  std::array<double, 3> offset{};
+  for (const Json& loss : info.value("losses", Json::array()))
+    if (loss["code"] == "offset.positions")
+      std::sscanf(loss["sentence"].get<std::string>().c_str(), "%*[^(](%lf, %lf, %lf)", &offset[0],
+                  &offset[1], &offset[2]);
+  return offset;
+}
+
 int compare_info(int count, char** arguments) {
   int bad = 0;
   std::size_t files = 0, meshes = 0, numbers = 0;
   for (int i = 2; i + 1 < count; i += 2) {
     const std::string file = arguments[i];
-    Soup soup;
-    if (!soup.read(file)) continue;
     const Json info = Json::parse(std::ifstream(arguments[i + 1]), nullptr, false);
+    Soup soup;
+    if (!soup.read(file, info.is_object() ? offset_of(info) : std::array<double, 3>{})) continue;
     if (!info.is_object() || !info.contains("result")) {
       std::cerr << "CGAL: " << file << ": CGAL reads it, vkmesh info does not\n";
       ++bad;
