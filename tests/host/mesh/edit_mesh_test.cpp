@@ -176,7 +176,8 @@ struct Model {
     tags[{a, b}] = back;
   }
   void split(std::uint32_t p, std::uint32_t q, std::uint32_t m) {
-    for (const auto& [from, to] : {Pair{p, q}, Pair{q, p}}) {
+    for (const Pair& edge : {Pair{p, q}, Pair{q, p}}) {
+      const std::uint32_t from = edge.first, to = edge.second;
       const std::uint32_t a = across(from, to);
       if (a == apex) continue;
       const std::uint32_t tag = tags.at({from, to});
