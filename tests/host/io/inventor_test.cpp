@@ -485,18 +485,18 @@ TEST_CASE("Inventor nodes do not stand too deep", "[io][inventor][bad]") {
     for (std::size_t i = 0; i < depth; ++i) text += "} ";
     return text;
   };
-  CHECK(scene(nested(500)).corners.size() == 3);
-  CHECK_THAT(scene_error(nested(600)).message, Catch::Contains("more than 512 others"));
-  CHECK_THAT(scene_error(nested(100000)).message, Catch::Contains("more than 512 others"));
+  CHECK(scene(nested(250)).corners.size() == 3);
+  CHECK_THAT(scene_error(nested(300)).message, Catch::Contains("more than 256 others"));
+  CHECK_THAT(scene_error(nested(100000)).message, Catch::Contains("more than 256 others"));
   std::string chain = "DEF N0 Separator { " + kPoints + kTriangle + " }\n";
   for (int i = 1; i < 1000; ++i)
     chain += "DEF N" + std::to_string(i) + " Group { USE N" + std::to_string(i - 1) + " }\n";
   CHECK_THAT(scene_error("Switch { " + chain + "} USE N999").message,
-             Catch::Contains("more than 512 others"));
+             Catch::Contains("more than 256 others"));
   // Lists within unknown fields count, too.
   std::string lists = "Separator { a ";
   for (int i = 0; i < 100000; ++i) lists += "[ Group { a ";
-  CHECK_THAT(scene_error(lists).message, Catch::Contains("more than 512 others"));
+  CHECK_THAT(scene_error(lists).message, Catch::Contains("more than 256 others"));
   CHECK(scene_error("Odd { " + std::string(1 << 20, '{')).where.line == 2u);
 }
 

@@ -17,7 +17,7 @@
 namespace vkmesh::detail {
 
 /// How deep nodes may stand within nodes, by text and by USE.
-inline constexpr std::size_t kMaxSceneDepth = 512;
+inline constexpr std::size_t kMaxSceneDepth = 256;
 
 /// A field of a node. `text` is what stands between the brackets, or the single value.
 struct SceneField {
