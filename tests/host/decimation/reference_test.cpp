@@ -199,7 +199,8 @@ TEST_CASE("what is nearly the cheapest does as well as the cheapest", "[decimate
       // Most of these partitions is interface; of large ones it is little.
       const auto partitioned = detail::decimate_in_partitions(surface, options);
       REQUIRE(partitioned);
-      CHECK(mean(partitioned->positions, partitioned->mesh.origins()) < (test::kSanitized ? 1.1 : 1.08) * least);
+      CHECK(mean(partitioned->positions, partitioned->mesh.origins()) <
+            (test::kSanitized ? 1.1 : 1.08) * least);
     }
 }
 
