@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include <vkmesh/base/exceptions_to_result.h>
@@ -58,7 +59,7 @@ struct Recorder::State {
 
   [[nodiscard]] detail::Device& device() const { return context->device(); }
   [[nodiscard]] Result<void> require_recording() const;
-  [[nodiscard]] Result<void> wait_for_fence();
+  VkResult wait_for_fence() noexcept;
   [[nodiscard]] Result<void> read_times();
   void memory_barrier(VkPipelineStageFlags stages, VkAccessFlags access);
   void order(std::span<const Buffer* const> reads, std::span<const Buffer* const> writes);
@@ -67,7 +68,8 @@ struct Recorder::State {
 Recorder::State::~State() {
   if (borrowed) return;
   detail::Device& d = device();
-  if (phase == Phase::kRunning && !wait_for_fence() && phase == Phase::kRunning) {
+  if (phase == Phase::kRunning) wait_for_fence();
+  if (phase == Phase::kRunning) {
     d.abandoned.store(true);
     return;
   }
@@ -105,19 +107,26 @@ void Recorder::State::order(std::span<const Buffer* const> reads, std::span<cons
     if (!holds(written, b)) written.push_back(b->vk_buffer());
 }
 
-Result<void> Recorder::State::wait_for_fence() {
+/// Returns VK_SUCCESS, VK_ERROR_DEVICE_LOST, or what kept the wait from seeing the end of work that still
+/// runs.
+VkResult Recorder::State::wait_for_fence() noexcept {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::nanoseconds kPause = std::chrono::milliseconds(1);
   const detail::Device& d = device();
-  const auto nanoseconds = static_cast<std::uint64_t>(std::max<std::int64_t>(timeout.count(), 0));
-  const VkResult result = d.functions.vkWaitForFences(d.handle, 1, &fence, VK_TRUE, nanoseconds);
-  if (result == VK_TIMEOUT)
-    return fail(ErrorCode::kNoDevice,
-                d.info.name + " did not finish its work within " +
-                    std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count()) +
-                    " ms");
-  // A lost device runs nothing any more, so its objects can be destroyed.
-  phase = result == VK_SUCCESS ? Phase::kDone : Phase::kFailed;
-  VKMESH_VK(result, "waiting for " + d.info.name);
-  return {};
+  const auto begun = Clock::now();
+  std::chrono::nanoseconds left = std::max(timeout, std::chrono::nanoseconds(0));
+  for (;;) {
+    const VkResult result =
+        d.functions.vkWaitForFences(d.handle, 1, &fence, VK_TRUE, static_cast<std::uint64_t>(left.count()));
+    if (result == VK_SUCCESS) phase = Phase::kDone;
+    // A lost device runs nothing any more, so its objects can be destroyed.
+    if (result == VK_ERROR_DEVICE_LOST) phase = Phase::kFailed;
+    if (phase != Phase::kRunning || result == VK_TIMEOUT) return result;
+    // The wait itself failed, for want of memory say, and tells nothing about the work: it is tried again.
+    left = timeout - (Clock::now() - begun);
+    if (left <= kPause) return result;
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 Result<void> Recorder::State::read_times() {
@@ -341,7 +350,14 @@ Result<void> Recorder::wait(std::chrono::nanoseconds timeout) {
     if (state_->phase != State::Phase::kRunning)
       return fail(ErrorCode::kUsage, "no work was submitted to wait for");
     state_->timeout = timeout;
-    VKMESH_CHECK(state_->wait_for_fence());
+    const std::string& name = state_->device().info.name;
+    const VkResult result = state_->wait_for_fence();
+    if (result == VK_TIMEOUT)
+      return fail(ErrorCode::kNoDevice,
+                  name + " did not finish its work within " +
+                      std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count()) +
+                      " ms");
+    VKMESH_VK(result, "waiting for " + name);
     return state_->read_times();
   });
 }

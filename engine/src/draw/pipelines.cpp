@@ -78,6 +78,7 @@ Result<DrawPipelines*> Device::draw_pipelines() {
 }
 
 DrawPipelines::~DrawPipelines() {
+  if (device_.abandoned.load()) return;  // the device may still be using them
   const auto& vk = device_.functions;
   for (const auto& [key, pipeline] : pipelines_) vk.vkDestroyPipeline(device_.handle, pipeline, nullptr);
   vk.vkDestroyPipelineLayout(device_.handle, layout_, nullptr);

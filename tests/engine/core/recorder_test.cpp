@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -88,6 +89,34 @@ VkResult VKAPI_PTR wait_times_out(VkDevice device, std::uint32_t count, const Vk
   const VkResult result =
       FakeLoader::real<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, timeout);
   return timeouts_left-- > 0 ? VK_TIMEOUT : result;
+}
+
+int failures_left = 0;
+VkResult failure = VK_ERROR_OUT_OF_HOST_MEMORY;
+
+/// Waits until the work is done, so that nothing runs when the test ends, and then fails all the same.
+VkResult VKAPI_PTR wait_fails(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
+                              std::uint64_t) {
+  constexpr std::uint64_t kMinute = 60'000'000'000;
+  const VkResult result =
+      FakeLoader::real<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, kMinute);
+  return failures_left-- > 0 ? failure : result;
+}
+
+/// Names of what was destroyed since it was last emptied.
+std::vector<std::string> destroyed;
+
+void VKAPI_PTR note_fence(VkDevice, VkFence, const VkAllocationCallbacks*) {
+  destroyed.emplace_back("fence");
+}
+void VKAPI_PTR note_pool(VkDevice, VkCommandPool, const VkAllocationCallbacks*) {
+  destroyed.emplace_back("command pool");
+}
+void VKAPI_PTR note_render_pass(VkDevice, VkRenderPass, const VkAllocationCallbacks*) {
+  destroyed.emplace_back("render pass");
+}
+void VKAPI_PTR note_buffer(VkDevice, VkBuffer, const VkAllocationCallbacks*) {
+  destroyed.emplace_back("buffer");
 }
 
 VkResult VKAPI_PTR wait_loses_device(VkDevice device, std::uint32_t count, const VkFence* fences,
@@ -316,26 +345,75 @@ TEST_CASE("work that takes too long is an error, and can be waited for again") {
   CHECK(values_of<float>(work.maxima) == work.expected);
 }
 
+TEST_CASE("a wait that fails for want of memory does not end the work") {
+  FakeLoader loader;
+  loader.replace("vkWaitForFences", wait_fails);
+  failures_left = 0;
+  const auto context = require(Context::create(loader.options()));
+  for (const VkResult result :
+       {VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_UNKNOWN}) {
+    failure = result;
+    MaximaWork work(*context, 100);
+    {
+      // It passes while there is time.
+      Recorder recorder = require(Recorder::create(*context));
+      work.record(recorder);
+      failures_left = 3;
+      require_done(recorder.submit_and_wait());
+      CHECK(failures_left < 0);
+      CHECK(values_of<float>(work.maxima) == work.expected);
+    }
+    // It lasts.
+    Recorder recorder = require(Recorder::create(*context));
+    work.record(recorder);
+    failures_left = 1000000;
+    for (const auto& waited : {recorder.submit_and_wait(std::chrono::milliseconds(3)),
+                               recorder.wait(std::chrono::milliseconds(0))}) {
+      REQUIRE(!waited);
+      CHECK(waited.error().code ==
+            (result == VK_ERROR_UNKNOWN ? ErrorCode::kInternal : ErrorCode::kOutOfMemory));
+    }
+    failures_left = 0;
+    require_done(recorder.wait(std::chrono::seconds(60)));
+    CHECK(values_of<float>(work.maxima) == work.expected);
+  }
+}
+
 TEST_CASE("what a device that never answers may still use is not destroyed") {
 #if defined(VKMESH_ADDRESS_SANITIZER)
   __lsan_disable();  // the point of this test is a leak
 #endif
-  FakeLoader loader;
-  loader.replace("vkWaitForFences", wait_times_out);
-  timeouts_left = 0;
-  ContextOptions options = loader.options();
-  auto context = require(Context::create(options));
-  {
-    MaximaWork work(*context, 100);
-    Recorder recorder = require(Recorder::create(*context));
-    work.record(recorder);
-    timeouts_left = 2;
-    CHECK(!recorder.submit_and_wait(std::chrono::milliseconds(1)));
+  for (const VkResult result :
+       {VK_TIMEOUT, VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_UNKNOWN}) {
+    INFO("vkWaitForFences returns " << result);
+    FakeLoader loader;
+    loader.replace("vkWaitForFences", wait_fails);
+    failures_left = 0;
+    ContextOptions options = loader.options();
+    auto context = require(Context::create(options));
+    detail::Device& device = context->device();
+    if (device.draws) REQUIRE(device.draw_pipelines());
+    // From here on nothing is destroyed, whatever is asked for.
+    device.functions.vkDestroyFence = note_fence;
+    device.functions.vkDestroyCommandPool = note_pool;
+    device.functions.vkDestroyRenderPass = note_render_pass;
+    device.functions.vkDestroyBuffer = note_buffer;
+    destroyed.clear();
+    {
+      MaximaWork work(*context, 100);
+      Recorder recorder = require(Recorder::create(*context));
+      work.record(recorder);
+      failure = result;
+      failures_left = 2;
+      destroyed.clear();  // what staging took
+      CHECK(!recorder.submit_and_wait(std::chrono::milliseconds(0)));
+    }
+    CHECK(failures_left == 0);  // the recorder waited once more before it gave up
+    CHECK(device.abandoned);
+    CHECK(context->allocated_bytes() > 0);
+    context.reset();
+    CHECK(destroyed.empty());
   }
-  CHECK(timeouts_left == 0);  // the recorder waited once more before it gave up
-  CHECK(context->device().abandoned);
-  CHECK(context->allocated_bytes() > 0);
-  context.reset();
 #if defined(VKMESH_ADDRESS_SANITIZER)
   __lsan_enable();
 #endif

@@ -48,7 +48,8 @@ class Recorder {
   /// graphics pipeline. Sections are not timed. Errors: kUsage for a null handle.
   [[nodiscard]] static Result<Recorder> into(Context& context, VkCommandBuffer command_buffer);
 
-  /// Waits (at most as long as the last wait) for work that still runs.
+  /// Waits (at most as long as the last wait) for work that still runs. What work that did not end may use is
+  /// never destroyed: this recorder's own objects, and from then on all of the context's.
   ~Recorder();
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
@@ -75,8 +76,9 @@ class Recorder {
   void begin_section(const std::string& name);
 
   /// Runs what was recorded, and waits until it is done or the time is up. To be called once.
-  /// Errors: kNoDevice for a device that was lost or did not finish in time (wait() goes on waiting);
-  /// kOutOfMemory; kUsage for a second call, or on the caller's command buffer.
+  /// Errors: kNoDevice for a device that was lost or did not finish in time; kOutOfMemory, where waiting
+  /// still lacked memory when the time was up; kUsage for a second call, or on the caller's command buffer.
+  /// Unless the device was lost the work then still runs, and wait() goes on waiting.
   [[nodiscard]] Result<void> submit_and_wait(std::chrono::nanoseconds timeout = std::chrono::seconds(60));
   [[nodiscard]] Result<void> wait(std::chrono::nanoseconds timeout);
 
