@@ -8,6 +8,7 @@
 #include <vkmesh/engine/core/recorder.h>
 
 #include "core/device.h"
+#include "core/hazards.h"
 
 namespace vkmesh {
 namespace {
@@ -24,10 +25,6 @@ constexpr VkPipelineStageFlags kDrawStages = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT 
                                              VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
 constexpr VkAccessFlags kDrawReads =
     VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_UNIFORM_READ_BIT;
-
-bool holds(const std::vector<VkBuffer>& buffers, const Buffer* buffer) {
-  return std::find(buffers.begin(), buffers.end(), buffer->vk_buffer()) != buffers.end();
-}
 
 }  // namespace
 
@@ -48,9 +45,7 @@ struct Recorder::State {
   std::vector<std::string> sections;
   std::vector<SectionTime> times;
   RecorderCounts counts;
-  // What was touched since the last barrier.
-  std::vector<VkBuffer> read;
-  std::vector<VkBuffer> written;
+  detail::Hazards<VkBuffer> hazards;
 
   explicit State(Context& c) : context(&c) {}
   State(const State&) = delete;
@@ -88,23 +83,20 @@ void Recorder::State::memory_barrier(VkPipelineStageFlags stages, VkAccessFlags 
   const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, kWrites, access};
   device().functions.vkCmdPipelineBarrier(commands, drew ? kStages | kDrawStages : kStages, stages, 0, 1,
                                           &barrier, 0, nullptr, 0, nullptr);
-  read.clear();
-  written.clear();
+  hazards.pass_barrier();
 }
 
 void Recorder::State::order(std::span<const Buffer* const> reads, std::span<const Buffer* const> writes) {
-  const bool hazard =
-      std::any_of(reads.begin(), reads.end(), [&](const Buffer* b) { return holds(written, b); }) ||
-      std::any_of(writes.begin(), writes.end(),
-                  [&](const Buffer* b) { return holds(written, b) || holds(read, b); });
-  if (hazard) {
+  const bool hindered = std::any_of(reads.begin(), reads.end(),
+                                    [&](const Buffer* b) { return hazards.hinder_read(b->vk_buffer()); }) ||
+                        std::any_of(writes.begin(), writes.end(),
+                                    [&](const Buffer* b) { return hazards.hinder_write(b->vk_buffer()); });
+  if (hindered) {
     memory_barrier(drew ? kStages | kDrawStages : kStages, kReads | kWrites | (drew ? kDrawReads : 0u));
     ++counts.barriers;
   }
-  for (const Buffer* b : reads)
-    if (!holds(read, b)) read.push_back(b->vk_buffer());
-  for (const Buffer* b : writes)
-    if (!holds(written, b)) written.push_back(b->vk_buffer());
+  for (const Buffer* b : reads) hazards.note_read(b->vk_buffer());
+  for (const Buffer* b : writes) hazards.note_write(b->vk_buffer());
 }
 
 /// Returns VK_SUCCESS, VK_ERROR_DEVICE_LOST, or what kept the wait from seeing the end of work that still
