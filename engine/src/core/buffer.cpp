@@ -67,7 +67,7 @@ Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemor
       return does_not_fit(name, bytes, held);
 
     Buffer buffer;
-    buffer.context_ = &context;
+    buffer.device_ = context.shared_device();
     buffer.size_ = bytes;
     VkBufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
@@ -115,7 +115,7 @@ Result<Buffer> Buffer::create(Context& context, std::uint64_t bytes, BufferMemor
 }
 
 Buffer::Buffer(Buffer&& other) noexcept
-    : context_(std::exchange(other.context_, nullptr)),
+    : device_(std::exchange(other.device_, nullptr)),
       buffer_(std::exchange(other.buffer_, VK_NULL_HANDLE)),
       memory_(std::exchange(other.memory_, VK_NULL_HANDLE)),
       mapped_(std::exchange(other.mapped_, nullptr)),
@@ -127,7 +127,7 @@ Buffer::Buffer(Buffer&& other) noexcept
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
   if (this == &other) return *this;
   destroy();
-  context_ = std::exchange(other.context_, nullptr);
+  device_ = std::exchange(other.device_, nullptr);
   buffer_ = std::exchange(other.buffer_, VK_NULL_HANDLE);
   memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
   mapped_ = std::exchange(other.mapped_, nullptr);
@@ -143,28 +143,26 @@ Buffer::~Buffer() {
 }
 
 void Buffer::destroy() noexcept {
-  if (context_ == nullptr) return;
-  detail::Device& device = context_->device();
-  if (device.abandoned.load()) return;  // the device may still be using it
-  device.functions.vkDestroyBuffer(device.handle, buffer_, nullptr);
-  device.functions.vkFreeMemory(device.handle, memory_, nullptr);
-  device.allocated -= allocated_;
-  context_ = nullptr;
+  if (device_ == nullptr) return;
+  const std::shared_ptr<detail::Device> device = std::exchange(device_, nullptr);
+  if (device->abandoned.load()) return;  // the device may still be using it
+  device->functions.vkDestroyBuffer(device->handle, buffer_, nullptr);
+  device->functions.vkFreeMemory(device->handle, memory_, nullptr);
+  device->allocated -= allocated_;
 }
 
 Result<void> Buffer::flush() {
   if (coherent_ || mapped_ == nullptr) return {};
   const VkMappedMemoryRange all{VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, nullptr, memory_, 0, VK_WHOLE_SIZE};
-  const detail::Device& device = context_->device();
-  VKMESH_VK(device.functions.vkFlushMappedMemoryRanges(device.handle, 1, &all), "flushing a buffer");
+  VKMESH_VK(device_->functions.vkFlushMappedMemoryRanges(device_->handle, 1, &all), "flushing a buffer");
   return {};
 }
 
 Result<void> Buffer::invalidate() const {
   if (coherent_ || mapped_ == nullptr) return {};
   const VkMappedMemoryRange all{VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, nullptr, memory_, 0, VK_WHOLE_SIZE};
-  const detail::Device& device = context_->device();
-  VKMESH_VK(device.functions.vkInvalidateMappedMemoryRanges(device.handle, 1, &all), "invalidating a buffer");
+  VKMESH_VK(device_->functions.vkInvalidateMappedMemoryRanges(device_->handle, 1, &all),
+            "invalidating a buffer");
   return {};
 }
 
@@ -177,14 +175,14 @@ Result<void> Buffer::upload(std::span<const std::byte> data, std::uint64_t offse
       std::memcpy(mapped_ + offset, data.data(), data.size());
       return flush();
     }
-    const std::uint64_t round =
-        std::min<std::uint64_t>(data.size(), context_->device().options.staging_bytes);
-    VKMESH_TRY(Buffer staging, create(*context_, round, BufferMemory::kStaging, "staging"));
+    Context context(device_);
+    const std::uint64_t round = std::min<std::uint64_t>(data.size(), device_->options.staging_bytes);
+    VKMESH_TRY(Buffer staging, create(context, round, BufferMemory::kStaging, "staging"));
     for (std::uint64_t done = 0; done < data.size(); done += round) {
       const std::uint64_t bytes = std::min<std::uint64_t>(round, data.size() - done);
       std::memcpy(staging.mapped_, data.data() + done, bytes);
       VKMESH_CHECK(staging.flush());
-      VKMESH_TRY(Recorder recorder, Recorder::create(*context_));
+      VKMESH_TRY(Recorder recorder, Recorder::create(context));
       VKMESH_CHECK(recorder.copy(staging, *this, bytes, 0, offset + done));
       VKMESH_CHECK(recorder.submit_and_wait());
     }
@@ -202,12 +200,12 @@ Result<void> Buffer::download(std::span<std::byte> data, std::uint64_t offset) c
       std::memcpy(data.data(), mapped_ + offset, data.size());
       return {};
     }
-    const std::uint64_t round =
-        std::min<std::uint64_t>(data.size(), context_->device().options.staging_bytes);
-    VKMESH_TRY(const Buffer staging, create(*context_, round, BufferMemory::kReadback, "readback"));
+    Context context(device_);
+    const std::uint64_t round = std::min<std::uint64_t>(data.size(), device_->options.staging_bytes);
+    VKMESH_TRY(const Buffer staging, create(context, round, BufferMemory::kReadback, "readback"));
     for (std::uint64_t done = 0; done < data.size(); done += round) {
       const std::uint64_t bytes = std::min<std::uint64_t>(round, data.size() - done);
-      VKMESH_TRY(Recorder recorder, Recorder::create(*context_));
+      VKMESH_TRY(Recorder recorder, Recorder::create(context));
       VKMESH_CHECK(recorder.copy(*this, staging, bytes, offset + done, 0));
       VKMESH_CHECK(recorder.submit_and_wait());
       VKMESH_CHECK(staging.invalidate());

@@ -4,6 +4,28 @@
 #include "core/device.h"
 
 namespace vkmesh {
+namespace {
+
+/// Loaders and drivers hide what is newer than the version that an instance was made for, and have no
+/// function that tells this version.
+Result<void> require_instance_version(const AdoptedDevice& adopted) {
+  const auto load = [&](const char* name) { return adopted.get_instance_proc_addr(adopted.instance, name); };
+  const auto get_properties =
+      reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(load("vkGetPhysicalDeviceProperties"));
+  const auto get_device_proc_addr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(load("vkGetDeviceProcAddr"));
+  if (get_properties == nullptr || get_device_proc_addr == nullptr) return {};  // No instance hides these.
+  VkPhysicalDeviceProperties properties;
+  get_properties(adopted.physical_device, &properties);
+  if (properties.apiVersion < required_api_version()) return {};  // It is the device that is too old.
+  if (load("vkGetPhysicalDeviceFeatures2") != nullptr &&
+      get_device_proc_addr(adopted.device, "vkGetBufferDeviceAddress") != nullptr)
+    return {};
+  return fail(ErrorCode::kUsage, "the adopted instance was made for a version of Vulkan below 1.2, though " +
+                                     std::string(properties.deviceName) +
+                                     " has it: set VkApplicationInfo::apiVersion to VK_API_VERSION_1_2");
+}
+
+}  // namespace
 
 std::uint32_t required_api_version() {
   return VK_API_VERSION_1_2;
@@ -30,7 +52,7 @@ Result<std::vector<DeviceInfo>> list_devices(const ContextOptions& options) {
   });
 }
 
-Context::Context(std::unique_ptr<detail::Device> device) : device_(std::move(device)) {}
+Context::Context(std::shared_ptr<detail::Device> device) : device_(std::move(device)) {}
 
 Context::~Context() = default;
 
@@ -40,7 +62,7 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
     VKMESH_TRY(const auto devices, detail::physical_devices(instance->functions, instance->handle));
     VKMESH_TRY(const detail::PhysicalDevice physical, detail::choose(devices, options.device));
 
-    auto device = std::make_unique<detail::Device>(instance->functions, options);
+    auto device = std::make_shared<detail::Device>(instance->functions, options);
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -68,7 +90,7 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
     VKMESH_CHECK(device->initialise(physical));
     device->functions.vkGetDeviceQueue(device->handle, device->queue_family, 0, &device->queue);
 
-    std::unique_ptr<Context> context(new Context(std::move(device)));
+    auto context = std::make_unique<Context>(std::move(device));
     if (!options.skip_exactness_check) VKMESH_CHECK(detail::check_exactness(*context));
     return context;
   });
@@ -82,13 +104,14 @@ Result<std::unique_ptr<Context>> Context::adopt(const AdoptedDevice& adopted, co
       return fail(ErrorCode::kUsage, "an adopted device needs every handle, and vkGetInstanceProcAddr");
     if (static_cast<bool>(adopted.lock_queue) != static_cast<bool>(adopted.unlock_queue))
       return fail(ErrorCode::kUsage, "lock_queue and unlock_queue go together");
+    VKMESH_CHECK(require_instance_version(adopted));
     VKMESH_TRY(const auto functions,
                detail::load_instance_functions(adopted.get_instance_proc_addr, adopted.instance));
     const detail::PhysicalDevice physical = detail::judge(functions, adopted.physical_device, 0);
     if (!physical.info.usable)
       return fail(ErrorCode::kNoDevice, physical.info.name + " cannot be used: it " + physical.info.rejected);
 
-    auto device = std::make_unique<detail::Device>(functions, options);
+    auto device = std::make_shared<detail::Device>(functions, options);
     device->adopted = true;
     device->handle = adopted.device;
     device->queue = adopted.queue;
@@ -96,7 +119,7 @@ Result<std::unique_ptr<Context>> Context::adopt(const AdoptedDevice& adopted, co
     device->lock_queue = adopted.lock_queue;
     device->unlock_queue = adopted.unlock_queue;
     VKMESH_CHECK(device->initialise(physical));
-    std::unique_ptr<Context> context(new Context(std::move(device)));
+    auto context = std::make_unique<Context>(std::move(device));
     if (!options.skip_exactness_check) VKMESH_CHECK(detail::check_exactness(*context));
     return context;
   });

@@ -185,9 +185,7 @@ Result<void> Device::submit(const VkSubmitInfo& submit_info, VkFence fence) {
 }
 
 void Device::set_name(VkObjectType type, std::uint64_t object, const std::string& name) const {
-  if (instance_functions.vkSetDebugUtilsObjectNameEXT == nullptr || !instance || !instance->messages ||
-      name.empty())
-    return;
+  if (instance_functions.vkSetDebugUtilsObjectNameEXT == nullptr || name.empty()) return;
   const VkDebugUtilsObjectNameInfoEXT name_info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr,
                                                 type, object, name.c_str()};
   // A name that was not taken is no loss.

@@ -31,7 +31,7 @@ constexpr VkAccessFlags kDrawReads =
 struct Recorder::State {
   enum class Phase { kRecording, kRunning, kDone, kFailed };
 
-  Context* context = nullptr;
+  Context context;  // Of the same device as the caller's, which may go.
   VkCommandBuffer commands = VK_NULL_HANDLE;
   bool borrowed = false;
   bool drew = false;  // Only then may barriers name the stages of drawing, which not every queue has.
@@ -47,13 +47,15 @@ struct Recorder::State {
   RecorderCounts counts;
   detail::Hazards<VkBuffer> hazards;
 
-  explicit State(Context& c) : context(&c) {}
+  explicit State(const Context& c) : context(c.shared_device()) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State();
 
-  [[nodiscard]] detail::Device& device() const { return context->device(); }
+  [[nodiscard]] detail::Device& device() const { return context.device(); }
   [[nodiscard]] Result<void> require_recording() const;
+  [[nodiscard]] Result<void> require_own(const char* what, const std::string& name,
+                                         std::span<const Buffer* const> buffers) const;
   VkResult wait_for_fence() noexcept;
   [[nodiscard]] Result<void> read_times();
   void memory_barrier(VkPipelineStageFlags stages, VkAccessFlags access);
@@ -77,6 +79,20 @@ Recorder::State::~State() {
 Result<void> Recorder::State::require_recording() const {
   if (phase == Phase::kRecording) return {};
   return fail(ErrorCode::kUsage, "the recorder's work was submitted: nothing can be added to it");
+}
+
+/// `what` was given the buffers, and has this name if any.
+Result<void> Recorder::State::require_own(const char* what, const std::string& name,
+                                          std::span<const Buffer* const> buffers) const {
+  for (const Buffer* buffer : buffers) {
+    if (buffer->exists_in(context)) continue;
+    const bool made = buffer->vk_buffer() != VK_NULL_HANDLE;
+    return fail(ErrorCode::kUsage,
+                what + (name.empty() ? name : " '" + name + "'") + " was given memory that " +
+                    (made ? "another context made: a recorder takes what its own context made"
+                          : "nothing was written to"));
+  }
+  return {};
 }
 
 void Recorder::State::memory_barrier(VkPipelineStageFlags stages, VkAccessFlags access) {
@@ -177,7 +193,7 @@ Result<Recorder> Recorder::into(Context& context, VkCommandBuffer command_buffer
 }
 
 Context& Recorder::context() const {
-  return *state_->context;
+  return state_->context;
 }
 
 RecorderCounts Recorder::counts() const {
@@ -205,11 +221,7 @@ Result<void> Recorder::dispatch(const KernelSource& source, std::span<const std:
                       " are too many for '" + kernel.name() + "'");
     if (threads == 0) return {};
     for (const auto& buffers : {reads, writes})
-      for (const Buffer* buffer : buffers)
-        if (buffer->context() != state_->context)
-          return fail(ErrorCode::kUsage, "kernel '" + kernel.name() +
-                                             "' was given memory that nothing was written to, or that "
-                                             "another context made");
+      VKMESH_CHECK(state_->require_own("kernel", kernel.name(), buffers));
     const detail::Device& d = state_->device();
     const auto& vk = d.functions;
     const std::uint64_t group = kernel.workgroup_size();
@@ -245,9 +257,9 @@ Result<void> Recorder::copy(const Buffer& from, const Buffer& to, std::uint64_t 
         to_offset < from_offset + bytes)
       return fail(ErrorCode::kUsage, "a copy within a buffer must not overlap itself");
     if (bytes == 0) return {};
-    const Buffer* reads[] = {&from};
-    const Buffer* writes[] = {&to};
-    state_->order(reads, writes);
+    const Buffer* const buffers[] = {&from, &to};
+    VKMESH_CHECK(state_->require_own("a copy", "", buffers));
+    state_->order({&buffers[0], 1}, {&buffers[1], 1});
     const VkBufferCopy region{from_offset, to_offset, bytes};
     state_->device().functions.vkCmdCopyBuffer(state_->commands, from.vk_buffer(), to.vk_buffer(), 1,
                                                &region);
@@ -263,6 +275,7 @@ Result<void> Recorder::update(const Buffer& to, std::span<const std::byte> data)
       return fail(ErrorCode::kUsage, "an update of " + std::to_string(data.size()) + " bytes");
     if (data.empty()) return {};
     const Buffer* writes[] = {&to};
+    VKMESH_CHECK(state_->require_own("an update", "", writes));
     state_->order({}, writes);
     state_->device().functions.vkCmdUpdateBuffer(state_->commands, to.vk_buffer(), 0, data.size(),
                                                  data.data());
@@ -277,6 +290,7 @@ Result<void> Recorder::graphics(const std::function<void(VkCommandBuffer)>& comm
     VKMESH_CHECK(state_->require_recording());
     if (!state_->device().draws)
       return fail(ErrorCode::kNoDevice, "the queue of " + state_->device().info.name + " does not draw");
+    for (const auto& buffers : {reads, writes}) VKMESH_CHECK(state_->require_own("drawing", "", buffers));
     state_->drew = true;
     state_->order(reads, writes);
     commands(state_->commands);

@@ -105,7 +105,7 @@ struct LoaderFunctions {
 
 struct InstanceFunctions {
   VKMESH_INSTANCE_FUNCTIONS(VKMESH_MEMBER)
-  // VK_EXT_debug_utils: present with validation only.
+  // VK_EXT_debug_utils: null in an instance without it. Those of the engine's own have it with validation.
   PFN_vkCreateDebugUtilsMessengerEXT vkCreateDebugUtilsMessengerEXT = nullptr;
   PFN_vkDestroyDebugUtilsMessengerEXT vkDestroyDebugUtilsMessengerEXT = nullptr;
   PFN_vkSetDebugUtilsObjectNameEXT vkSetDebugUtilsObjectNameEXT = nullptr;

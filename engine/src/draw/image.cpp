@@ -26,7 +26,7 @@ Result<Image> Image::create(Context& context, std::uint32_t width, std::uint32_t
   const auto& vk = device.functions;
   const std::string what = "making the image '" + name + "'";
   Image image;
-  image.context_ = &context;
+  image.device_ = context.shared_device();
 
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
@@ -74,14 +74,14 @@ Result<Image> Image::create(Context& context, std::uint32_t width, std::uint32_t
 }
 
 Image::Image(Image&& other) noexcept
-    : context_(std::exchange(other.context_, nullptr)),
+    : device_(std::exchange(other.device_, nullptr)),
       image_(std::exchange(other.image_, VK_NULL_HANDLE)),
       view_(std::exchange(other.view_, VK_NULL_HANDLE)),
       memory_(std::exchange(other.memory_, VK_NULL_HANDLE)),
       allocated_(std::exchange(other.allocated_, 0)) {}
 
 Image& Image::operator=(Image&& other) noexcept {
-  std::swap(context_, other.context_);
+  std::swap(device_, other.device_);
   std::swap(image_, other.image_);
   std::swap(view_, other.view_);
   std::swap(memory_, other.memory_);
@@ -90,13 +90,11 @@ Image& Image::operator=(Image&& other) noexcept {
 }
 
 Image::~Image() {
-  if (context_ == nullptr) return;
-  Device& device = context_->device();
-  if (device.abandoned.load()) return;  // the device may still be using it
-  device.functions.vkDestroyImageView(device.handle, view_, nullptr);
-  device.functions.vkDestroyImage(device.handle, image_, nullptr);
-  device.functions.vkFreeMemory(device.handle, memory_, nullptr);
-  device.allocated -= allocated_;
+  if (device_ == nullptr || device_->abandoned.load()) return;  // the device may still be using it
+  device_->functions.vkDestroyImageView(device_->handle, view_, nullptr);
+  device_->functions.vkDestroyImage(device_->handle, image_, nullptr);
+  device_->functions.vkFreeMemory(device_->handle, memory_, nullptr);
+  device_->allocated -= allocated_;
 }
 
 }  // namespace vkmesh::detail

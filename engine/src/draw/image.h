@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include <vulkan/vulkan_core.h>
@@ -34,7 +35,7 @@ class Image {
   [[nodiscard]] VkImageView view() const { return view_; }
 
  private:
-  Context* context_ = nullptr;
+  std::shared_ptr<Device> device_;
   VkImage image_ = VK_NULL_HANDLE;
   VkImageView view_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;

@@ -11,14 +11,14 @@
 namespace vkmesh {
 
 struct RenderTarget::State {
-  explicit State(Context& c) : context(c) {}
+  explicit State(const Context& c) : context(c.shared_device()) {}
   ~State();
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
   [[nodiscard]] Result<void> make_view(VkDescriptorSetLayout layout);
 
-  Context& context;
+  Context context;  ///< Of the same device as the caller's, which may go.
   std::uint32_t width = 0, height = 0;
   detail::Image samples;  ///< Colour, before it is resolved.
   detail::Image depth;

@@ -42,14 +42,16 @@ Result<DeviceMesh> DeviceMesh::create(Context& context, const HalfEdgeMesh& mesh
                                       std::span<const Vec3> positions) {
   if (!mesh.is_triangles())
     return fail(ErrorCode::kUnsuitable, "a device takes triangles only: triangulate the polygons first");
-  DeviceMesh result;
-  result.context_ = &context;
-  result.mesh_ = &mesh;
-  result.vertices_ = static_cast<std::uint32_t>(mesh.vertex_count());
-  result.faces_ = static_cast<std::uint32_t>(mesh.face_count());
-  result.closed_ = mesh.boundary_half_edge_count() == 0;
-  VKMESH_CHECK(result.upload_positions(positions));
-  return result;
+  return detail::catching([&]() -> Result<DeviceMesh> {
+    DeviceMesh result;
+    result.context_ = std::make_shared<Context>(context.shared_device());
+    result.mesh_ = &mesh;
+    result.vertices_ = static_cast<std::uint32_t>(mesh.vertex_count());
+    result.faces_ = static_cast<std::uint32_t>(mesh.face_count());
+    result.closed_ = mesh.boundary_half_edge_count() == 0;
+    VKMESH_CHECK(result.upload_positions(positions));
+    return result;
+  });
 }
 
 Result<void> DeviceMesh::upload_positions(std::span<const Vec3> positions) {

@@ -120,14 +120,22 @@ VkResult VKAPI_PTR module_of_a_bad_device(VkDevice device, const VkShaderModuleC
                                                                             module);
 }
 
+/// Names that were given to objects.
+std::vector<std::string> names_given;
+
+VkResult VKAPI_PTR note_name(VkDevice, const VkDebugUtilsObjectNameInfoEXT* info) {
+  names_given.emplace_back(info->pObjectName);
+  return VK_SUCCESS;
+}
+
 /// An instance and a device as a program of its own would make them.
 struct OwnDevice {
   AdoptedDevice handles;
   std::unique_ptr<detail::Instance> instance;
   PFN_vkDestroyDevice destroy = nullptr;
 
-  OwnDevice() {
-    auto made = detail::Instance::create(device_options());
+  explicit OwnDevice(const ContextOptions& options = device_options()) {
+    auto made = detail::Instance::create(options);
     REQUIRE(made);
     instance = *std::move(made);
     const auto& vki = instance->functions;
@@ -281,6 +289,56 @@ TEST_CASE("adopting refuses what is incomplete") {
   context = Context::adopt(handles);
   REQUIRE(!context);
   CHECK(context.error().code == ErrorCode::kUsage);
+}
+
+TEST_CASE("adopting names the version that an instance was made for, or the device's") {
+  const OwnDevice own;
+  struct Case {
+    const char* function;
+    PFN_vkVoidFunction replacement;
+    ErrorCode code;
+    const char* says;
+  };
+  // What Mesa and the loader do for an instance of 1.1, and later loaders for one of 1.0.
+  const Case cases[] = {
+      {"vkGetBufferDeviceAddress", nullptr, ErrorCode::kUsage,
+       "has it: set VkApplicationInfo::apiVersion to VK_API_VERSION_1_2"},
+      {"vkGetPhysicalDeviceFeatures2", nullptr, ErrorCode::kUsage,
+       "the adopted instance was made for a version of Vulkan below 1.2"},
+      {"vkGetPhysicalDeviceProperties", reinterpret_cast<PFN_vkVoidFunction>(properties_of_old_device),
+       ErrorCode::kNoDevice, "cannot be used: it needs Vulkan 1.2.0, has 1.1.0"},
+  };
+  for (const Case& c : cases) {
+    FakeLoader loader;
+    loader.replace(c.function, c.replacement);
+    AdoptedDevice handles = own.handles;
+    handles.get_instance_proc_addr = FakeLoader::entry;
+    const auto context = Context::adopt(handles);
+    REQUIRE(!context);
+    CHECK(context.error().code == c.code);
+    CHECK_THAT(context.error().message, Contains(c.says));
+  }
+}
+
+TEST_CASE("names reach the objects of an adopted device, where its instance takes them") {
+  {
+    const OwnDevice own;
+    FakeLoader loader;
+    loader.replace("vkSetDebugUtilsObjectNameEXT", note_name);
+    AdoptedDevice handles = own.handles;
+    handles.get_instance_proc_addr = FakeLoader::entry;
+    const auto context = Context::adopt(handles);
+    REQUIRE(context);
+    names_given.clear();
+    REQUIRE(Buffer::create(**context, 4, BufferMemory::kDevice, "a buffer of the test"));
+    CHECK(names_given == std::vector<std::string>{"a buffer of the test"});
+  }
+  ContextOptions plain = device_options();
+  plain.validation = false;
+  const OwnDevice unnamed(plain);
+  const auto context = Context::adopt(unnamed.handles);
+  REQUIRE(context);
+  CHECK(Buffer::create(**context, 4, BufferMemory::kDevice, "a buffer of the test"));
 }
 
 TEST_CASE("a device whose arithmetic differs is refused by name") {

@@ -11,7 +11,13 @@
 #endif
 
 #include <vkmesh/engine/core/dispatch.h>
+#include <vkmesh/engine/draw/draw.h>
 #include <vkmesh/engine/mesh/device_mesh.h>
+#include <vkmesh/engine/passes/laplacian_smoothing.h>
+#include <vkmesh/engine/passes/surface_measures.h>
+#include <vkmesh/engine/passes/vertex_normals.h>
+#include <vkmesh/passes/vertex_normals.h>
+#include <vkmesh/repair/consolidate.h>
 
 #include "core/device.h"
 #include "core/fake_loader.h"
@@ -19,6 +25,7 @@
 #include "passes/triangle_normals_params.h"
 #include "shaders.h"
 #include "support/device.h"
+#include "support/shapes.h"
 
 namespace vkmesh::test {
 namespace {
@@ -245,6 +252,57 @@ TEST_CASE("a recorder refuses what it cannot do") {
   CHECK(code(recorder.copy(work.angles, work.maxima, 4)) == ErrorCode::kUsage);
   CHECK(code(dispatch(1).record()) == ErrorCode::kUsage);
   CHECK(!Recorder::into(test_context(), VK_NULL_HANDLE));
+}
+
+TEST_CASE("what another context made is refused, whatever the work") {
+  const auto other = require(Context::create(device_options()));
+  const IndexedFaceSet torus_faces = torus(8, 4);
+  const HalfEdgeMesh torus_mesh = require(to_half_edge_mesh(torus_faces));
+  DeviceMesh mesh = require(DeviceMesh::create(*other, torus_mesh, torus_faces.points));
+  const MaximaWork own(test_context(), 10), others(*other, 10);
+  Recorder recorder = require(Recorder::create(test_context()));
+  const auto refused = [](const Result<void>& result) {
+    REQUIRE(!result);
+    CHECK(result.error().code == ErrorCode::kUsage);
+    CHECK_THAT(result.error().message, Catch::Contains("was given memory that another context made"));
+  };
+  DeviceVertexNormals normals;
+  refused(record_vertex_normals(recorder, mesh, normals));
+  DeviceSmoothing smoothing;
+  refused(record_laplacian_smoothing(recorder, mesh, smoothing, {}));
+  DeviceSurfaceMeasures measures;
+  refused(record_surface_measures(recorder, mesh, measures));
+  refused(recorder.copy(others.angles, own.maxima, 4));
+  refused(recorder.copy(own.angles, others.maxima, 4));
+  const std::uint32_t zero = 0;
+  refused(recorder.update(others.maxima, std::as_bytes(std::span(&zero, 1))));
+  const Buffer* foreign[] = {&others.maxima};
+  refused(recorder.graphics([](VkCommandBuffer) { FAIL("nothing is to be drawn"); }, foreign, {}));
+  refused(recorder.graphics([](VkCommandBuffer) { FAIL("nothing is to be drawn"); }, {}, foreign));
+  CHECK(recorder.counts().copies == 1);  // record_surface_measures clears its own sums first.
+  require_done(recorder.submit_and_wait());
+}
+
+TEST_CASE("what a context made outlives it, and works on") {
+  const IndexedFaceSet torus_faces = torus(8, 4);
+  const HalfEdgeMesh torus_mesh = require(to_half_edge_mesh(torus_faces));
+  auto context = require(Context::create(device_options()));
+  DeviceMesh mesh = require(DeviceMesh::create(*context, torus_mesh, torus_faces.points));
+  RenderTarget target = require(RenderTarget::create(*context, 16, 16));
+  DeviceVertexNormals normals;
+  Recorder recorder = require(Recorder::create(*context));
+  context.reset();
+  require_done(record_vertex_normals(recorder, mesh, normals));
+  const Camera camera = require(frame_camera(torus_faces.points, 1.0));
+  require_done(record_draw(recorder, require(geometry_of(mesh)), camera, {}, target));
+  require_done(recorder.submit_and_wait());
+  CHECK(require(normals.normals.download()) ==
+        require(vertex_normals(torus_mesh, torus_faces.points, VertexNormalsOptions{})));
+  CHECK(target.download());
+  require_done(mesh.upload_positions(torus_faces.points));
+  // They may also go in any order.
+  Recorder second = require(Recorder::create(recorder.context()));
+  require_done(second.submit_and_wait());
 }
 
 TEST_CASE("sections are timed where the device can") {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include <vulkan/vulkan_core.h>
@@ -36,7 +37,10 @@ class Buffer {
   [[nodiscard]] std::uint64_t size() const { return size_; }  ///< Bytes, as asked for.
   [[nodiscard]] std::uint64_t address() const { return address_; }
   [[nodiscard]] VkBuffer vk_buffer() const { return buffer_; }
-  [[nodiscard]] const Context* context() const { return context_; }  ///< Null when empty.
+  /// Tells whether create() made it in this context, if only of no bytes.
+  [[nodiscard]] bool exists_in(const Context& context) const {
+    return device_ != nullptr && device_ == context.shared_device();
+  }
   /// The host's view of the memory; empty where it has none. After writing call flush(), before reading
   /// invalidate().
   [[nodiscard]] std::span<std::byte> mapped() const { return {mapped_, mapped_ == nullptr ? 0 : size_}; }
@@ -52,7 +56,7 @@ class Buffer {
  private:
   void destroy() noexcept;
 
-  Context* context_ = nullptr;
+  std::shared_ptr<detail::Device> device_;
   VkBuffer buffer_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   std::byte* mapped_ = nullptr;

@@ -63,7 +63,9 @@ struct ContextOptions {
 };
 
 /// Device of the caller's, which the engine uses and never destroys. It must have been created with what
-/// required_api_version(), required_features() and required_extensions() name, and outlive the context.
+/// required_features() and required_extensions() name, its instance with at least required_api_version() as
+/// VkApplicationInfo::apiVersion, and both must outlive the context and all that is made with it. Where the
+/// instance has VK_EXT_debug_utils, buffers, images and pipelines bear names.
 struct AdoptedDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -71,7 +73,8 @@ struct AdoptedDevice {
   VkQueue queue = VK_NULL_HANDLE;  ///< Its family must support compute.
   std::uint32_t queue_family = 0;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
-  /// Called around each use of the queue, for callers that use it from other threads. Both or neither.
+  /// Called around each use of the queue, for callers that use it from other threads. Both or neither. They
+  /// must not throw.
   std::function<void()> lock_queue;
   std::function<void()> unlock_queue;
 };
@@ -88,8 +91,8 @@ struct AdoptedDevice {
 [[nodiscard]] Result<std::vector<DeviceInfo>> list_devices(const ContextOptions& options = {});
 
 /// A device and its queue, the kernels made for it, and a tally of its memory. Several contexts may live at
-/// once. Its functions may be called from several threads. Must outlive what is made with it (buffers,
-/// recorders, meshes).
+/// once. Its functions may be called from several threads. What is made with it (buffers, recorders, meshes)
+/// may outlive it, works on, and keeps the device open.
 class Context {
  public:
   /// Opens a device, and checks its arithmetic on a few hundred values.
@@ -98,7 +101,8 @@ class Context {
   [[nodiscard]] static Result<std::unique_ptr<Context>> create(const ContextOptions& options = {});
 
   /// Works on the caller's device. Options on validation and on the choice of a device are ignored. Errors:
-  /// kUsage for a missing handle; kNoDevice where the device lacks what is required or computes otherwise.
+  /// kUsage for a missing handle, or an instance made for a version of Vulkan below required_api_version();
+  /// kNoDevice where the device lacks what is required or computes otherwise.
   [[nodiscard]] static Result<std::unique_ptr<Context>> adopt(const AdoptedDevice& adopted,
                                                               const ContextOptions& options = {});
 
@@ -112,12 +116,13 @@ class Context {
   /// Takes the validation messages gathered since the last call.
   [[nodiscard]] std::vector<std::string> take_validation_messages();
 
-  /// Internal: for the engine's own sources.
-  [[nodiscard]] detail::Device& device() { return *device_; }
+  /// Internal: for the engine's own sources. The device closes with the last who share it.
+  explicit Context(std::shared_ptr<detail::Device> device);
+  [[nodiscard]] const std::shared_ptr<detail::Device>& shared_device() const { return device_; }
+  [[nodiscard]] detail::Device& device() const { return *device_; }
 
  private:
-  explicit Context(std::unique_ptr<detail::Device> device);
-  std::unique_ptr<detail::Device> device_;
+  std::shared_ptr<detail::Device> device_;
 };
 
 }  // namespace vkmesh

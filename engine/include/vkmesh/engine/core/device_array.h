@@ -60,7 +60,7 @@ class DeviceArray {
   [[nodiscard]] std::size_t size() const { return size_; }  ///< Values.
   [[nodiscard]] const Buffer& buffer() const { return buffer_; }
   /// Tells whether resize() or upload() made it in this context, if only for no values.
-  [[nodiscard]] bool exists_in(const Context& context) const { return buffer_.context() == &context; }
+  [[nodiscard]] bool exists_in(const Context& context) const { return buffer_.exists_in(context); }
 
  private:
   Buffer buffer_;

@@ -34,8 +34,8 @@ struct RecorderCounts {
 
 /// Records kernels (see dispatch.h) and copies in the order of the calls. Each says which buffers it reads
 /// and writes; where one touches what an earlier one wrote, or writes what an earlier one read, a memory
-/// barrier goes between them, and nowhere else. Buffers must live until the work has run. One thread at a
-/// time.
+/// barrier goes between them, and nowhere else. Buffers must live until the work has run, and be of the
+/// recorder's context: else the error is kUsage. One thread at a time.
 class Recorder {
  public:
   /// Records into a command buffer of its own, to be run by submit_and_wait(). Errors: kOutOfMemory,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include <vkmesh/base/result.h>
@@ -57,7 +58,7 @@ class DeviceMesh {
   [[nodiscard]] Result<void> upload_corners_of_vertices();
   [[nodiscard]] Result<void> upload_neighbours();
 
-  Context* context_ = nullptr;
+  std::shared_ptr<Context> context_;  ///< Of the same device as the caller's, which may go.
   const HalfEdgeMesh* mesh_ = nullptr;
   std::uint32_t vertices_ = 0;
   std::uint32_t faces_ = 0;
