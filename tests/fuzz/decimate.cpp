@@ -553,13 +553,12 @@ void fuzz_index_buffer(const Input<Vec3>& input, DecimateOptions options) {
   options.keep_history = false;
   const Topology before = welded(input.points, input.corners);
   const auto result = decimate_index_buffer(input.points, input.corners, options);
-  require(result.has_value() == (before.manifold() && before.oriented()),
-          "manifolds are taken, and nothing else: " + (result ? "" : result.error().describe()));
-  if (!result) return require(result.error().code == ErrorCode::kUnsuitable, "refused as unsuitable");
+  require(result.has_value(), "any triangles are taken");
   require(result->indices.size() == 3 * result->source_face.size(), "each triangle has a source");
   for (const std::uint32_t i : result->indices) require(i < input.points.size(), "indices name vertices");
   require(std::is_sorted(result->source_face.begin(), result->source_face.end(), std::less_equal<>()),
           "sources ascend");
+  if (!before.manifold() || !before.oriented()) return;
   const Topology after = welded(input.points, result->indices);
   require(after.manifold() && after.oriented(), "a level is a manifold");
   if (options.prune_size) return;

@@ -16,6 +16,7 @@
 #include "decimation/setup/build_mesh.h"
 #include "decimation/setup/check_options.h"
 #include "decimation/setup/initial_quadrics.h"
+#include "decimation/setup/packed_attributes.h"
 #include "decimation/setup/prepare.h"
 #include "decimation/setup/prune.h"
 
@@ -27,10 +28,12 @@ using namespace detail;
 template <class Point>
 Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                                               std::span<const std::uint32_t> corners,
-                                              const DecimateOptions& options, const PartitionSizes& sizes,
+                                              const DecimateOptions& given, const PartitionSizes& sizes,
                                               const Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
-  VKMESH_CHECK(check_options(options, points.size(), corners.size()));
+  VKMESH_CHECK(check_options(given, points.size(), corners.size()));
+  const PackedAttributes packed(given);
+  const DecimateOptions& options = packed.options();
 
   // Prepare
   VKMESH_TRY(BuiltMesh built, build_mesh(points, corners));

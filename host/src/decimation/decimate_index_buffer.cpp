@@ -1,11 +1,13 @@
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/decimation/decimate_index_buffer.h>
 
 #include "base/distinct_rows.h"
 #include "decimation/setup/check_options.h"
+#include "decimation/setup/part_surface.h"
 
 namespace vkmesh {
 namespace {
@@ -23,11 +25,14 @@ std::vector<std::uint32_t> first_at_place(std::span<const Vec3> points) {
   return first;
 }
 
+/// The corner that ends the edge which starts at corner h.
+std::uint32_t end_of(std::uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+
 Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const std::uint32_t> indices,
                                  const DecimateOptions& options, const Progress& progress) {
   const auto usage = [](const char* what) { return fail(ErrorCode::kUsage, what); };
-  if (options.operation != DecimateOperation::kHalfEdgeCollapse)
-    return usage("only half-edge collapses leave the vertices as they are");
   if (!options.corner_groups.empty()) return usage("the vertices are the corner_groups of an index buffer");
   if (indices.size() % 3 != 0) return usage("decimation takes three indices a triangle");
   for (const std::uint32_t v : indices)
@@ -52,6 +57,8 @@ Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const s
   }
 
   DecimateOptions welded = options;
+  if (welded.operation == DecimateOperation::kEdgeCollapse)
+    welded.operation = DecimateOperation::kHalfEdgeCollapse;
   welded.corner_groups = vertices;
   for (DecimateAttribute& a : welded.attributes) a.corners = vertices;
   for (std::uint32_t& v : welded.locked.vertices) v = first[v];
@@ -64,10 +71,26 @@ Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const s
   }
   welded.locked.edges.clear();
   for (const std::uint32_t h : options.locked.edges)
-    for (const std::uint32_t c : {h, h % 3 == 2 ? h - 2 : h + 1})
-      welded.locked.vertices.push_back(first[indices[c]]);
+    for (const std::uint32_t c : {h, end_of(h)}) welded.locked.vertices.push_back(first[indices[c]]);
 
-  VKMESH_TRY(const Decimated d, decimate(TriangleSurface{points, corners}, welded, progress));
+  auto decimated = decimate(TriangleSurface{points, corners}, welded, progress);
+  if (!decimated && decimated.error().code == ErrorCode::kUnsuitable) {
+    // Most surfaces are oriented manifolds. What could have been unsuitable else was looked at above.
+    const detail::PartedSurface parts = detail::part_surface(points.size(), corners, vertices);
+    std::vector<std::uint8_t> locked = parts.parted;
+    for (const std::uint32_t v : welded.locked.vertices) locked[v] = 1;
+    for (const std::uint32_t f : welded.locked.faces)
+      for (std::size_t i = 0; i < 3; ++i) locked[corners[3 * f + i]] = 1;
+    welded.locked = {};
+    std::vector<Vec3> places;
+    for (std::uint32_t v = 0; v < parts.point_of.size(); ++v) {
+      places.push_back(points[parts.point_of[v]]);
+      if (locked[parts.point_of[v]]) welded.locked.vertices.push_back(v);
+    }
+    decimated = decimate(TriangleSurface{places, parts.corners}, welded, progress);
+  }
+  if (!decimated) return tl::unexpected<Error>(std::move(decimated).error());
+  const Decimated& d = *decimated;
   DecimatedIndexBuffer result{d, {}, {}};
   result.indices.reserve(d.attributes.corners.size());
   for (const std::uint32_t w : d.attributes.corners)
@@ -78,10 +101,16 @@ Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const s
 
 }  // namespace
 
-Result<DecimatedIndexBuffer> decimate_index_buffer(std::span<const Vec3> points,
+Result<DecimatedIndexBuffer> decimate_index_buffer(const StridedSpan<Vec3>& points,
                                                    std::span<const std::uint32_t> indices,
                                                    const DecimateOptions& options, const Progress& progress) {
-  return detail::catching([&] { return run(points, indices, options, progress); });
+  return detail::catching([&] {
+    if (points.is_packed()) return run(points.packed(), indices, options, progress);
+    std::vector<Vec3> packed;
+    packed.reserve(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) packed.push_back(points[v]);
+    return run(packed, indices, options, progress);
+  });
 }
 
 }  // namespace vkmesh

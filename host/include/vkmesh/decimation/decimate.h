@@ -49,6 +49,20 @@ struct DecimateAttribute {
   /// box. 0: it is carried along, and its seams are kept. Default 0.01.
   double weight = 0.01;
   AttributeKind kind = AttributeKind::kPlain;
+  /// Floats from one value to the next, for values in an interleaved vertex buffer: `values` then begins with
+  /// the first of them. Default 0: as many as components.
+  std::uint32_t stride = 0;
+
+  /// Whole values in `values`.
+  [[nodiscard]] std::size_t value_count() const {
+    return components == 0 || values.size() < components ? 0 : (values.size() - components) / step() + 1;
+  }
+  [[nodiscard]] std::span<const float> value(std::size_t i) const {
+    return values.subspan(i * step(), components);
+  }
+
+ private:
+  [[nodiscard]] std::size_t step() const { return stride != 0 ? stride : components; }
 };
 
 /// When to stop: the first of these that is met counts. None set: when no legal removal is left.

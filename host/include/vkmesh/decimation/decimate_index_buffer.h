@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <vkmesh/decimation/decimate.h>
+#include <vkmesh/mesh/strided_span.h>
 
 namespace vkmesh {
 
@@ -19,11 +20,22 @@ struct DecimatedIndexBuffer : DecimationReport {
 /// between them seams: what `decimate` says of seams holds, so a level has no cracks, and both sides of a
 /// seam end at the same places. Triangles with two corners at one place are left out.
 ///
-/// `points`, and the values of options.attributes, which must name no corners: one for each vertex.
-/// options.operation must be half-edge collapse. What is locked, or of faces, is numbered as in the input.
-/// O(n log n). Errors: as `decimate`, kUnsuitable too where the surface is no oriented manifold once points
-/// are made one; kUsage for corner_groups.
-[[nodiscard]] Result<DecimatedIndexBuffer> decimate_index_buffer(std::span<const Vec3> points,
+/// The triangles need be no oriented manifold. Where it is not clear which two of the triangles at an edge
+/// continue each other, as where a fin stands on a surface, three sheets meet or a triangle is turned, and
+/// where sheets touch in one point, the vertices are locked and all else is simplified. (A seam whose sides
+/// collapse together would need a rule for which of three sheets leads; locked vertices need none, leave no
+/// crack and cost few triangles, since such edges are few.) The two sides of a double-sided part are told
+/// apart by their vertices, or as the reverses that they are, and each is simplified by itself, outline
+/// included.
+///
+/// `points`: those of the vertices, which may be members of an interleaved buffer: StridedSpan<Vec3>(buffer,
+/// vertices, sizeof(Vertex)). Values of options.attributes: one for each vertex; DecimateAttribute::stride is
+/// for interleaved ones, and corners must be empty. Neither need be copied by the caller; strides other than
+/// the packed ones cost as many bytes as there are values while the function runs. options.operation: an edge
+/// collapse, the default, is done as the half-edge collapse that leaves all vertices where they are; vertex
+/// removals leave them, too. What is locked, or of faces, is numbered as in the input. O(n log n). Errors: as
+/// `decimate`, but for those of surfaces that are no oriented manifolds; kUsage for corner_groups.
+[[nodiscard]] Result<DecimatedIndexBuffer> decimate_index_buffer(const StridedSpan<Vec3>& points,
                                                                  std::span<const std::uint32_t> indices,
                                                                  const DecimateOptions& options,
                                                                  const Progress& progress = {});

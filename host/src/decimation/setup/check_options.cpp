@@ -75,15 +75,18 @@ Result<void> check(const DecimateAttribute& a, std::size_t vertices, std::size_t
   if (!is_weight(a.weight)) return usage("the weight of an attribute must be at least 0 and finite");
   if (a.components == 0 || (a.kind == AttributeKind::kNormal && a.components != 3))
     return usage("an attribute needs at least one component, and normals three");
-  const std::size_t values = a.values.size() / a.components;
-  if (a.values.size() % a.components != 0 || (a.corners.empty() && values != vertices))
+  if (a.stride != 0 && a.stride < a.components)
+    return usage("the stride of an attribute must be at least its components");
+  const std::size_t values = a.value_count();
+  if ((a.stride == 0 && a.values.size() % a.components != 0) || (a.corners.empty() && values != vertices))
     return usage("an attribute needs one value for each vertex, or the value of each corner");
   if (!a.corners.empty() && a.corners.size() != corners)
     return usage("an attribute needs a value for each corner of the mesh");
   if (std::ranges::any_of(a.corners, [&](std::uint32_t value) { return value >= values; }))
     return usage("a corner names no value of an attribute");
-  if (!std::ranges::all_of(a.values, [](float x) { return std::isfinite(x); }))
-    return fail(ErrorCode::kUnsuitable, "decimation needs finite attributes");
+  for (std::size_t v = 0; v < values; ++v)
+    if (!std::ranges::all_of(a.value(v), [](float x) { return std::isfinite(x); }))
+      return fail(ErrorCode::kUnsuitable, "decimation needs finite attributes");
   return {};
 }
 
