@@ -25,7 +25,7 @@ Json to_json(const DistanceSummary& d) {
           {"root_mean_square", d.root_mean_square},
           {"maximum", d.maximum},
           {"hausdorff_low", d.hausdorff_low},
-          {"hausdorff_high", d.hausdorff_high},
+          {"hausdorff_high", std::isfinite(d.hausdorff_high) ? Json(d.hausdorff_high) : Json(nullptr)},
           {"mean_normal_angle", d.mean_normal_angle},
           {"maximum_normal_angle", d.maximum_normal_angle}};
 }
@@ -71,7 +71,7 @@ Result<void> run(Job& job, const CompareOptions& options) {
   job.row("root mean square", with_share(both.root_mean_square));
   job.row("Hausdorff", options.tolerance > 0 ? "between " + with_share(both.hausdorff_low) + " and " +
                                                    with_share(both.hausdorff_high)
-                                             : "at least " + with_share(both.maximum));
+                                             : "at least " + with_share(both.hausdorff_low));
   job.row("normals", "differ by " + brief(both.mean_normal_angle * kDegrees) + " degrees on average, " +
                          brief(both.maximum_normal_angle * kDegrees) + " at most");
   job.row("one way", "first to second: mean " + brief(distance.a_to_b.mean) + ", largest " +
@@ -101,7 +101,7 @@ void add_compare(CLI::App& app, Program& program) {
   command
       ->add_option("--tolerance", options->tolerance,
                    "How far apart the bounds of the Hausdorff distance may be, in percent of it;\n"
-                   "default 1, 0 for none")
+                   "default 1; with 0 it is at least the largest of the samples")
       ->type_name("P")
       ->check(number_between(0, 1000));
   command->callback([&program, options] {

@@ -1,4 +1,6 @@
 // vkmesh compare: distances that are known beforehand.
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "meshes.h"
@@ -41,4 +43,28 @@ TEST_CASE("compare refuses what has no surface, and names the file that cannot b
   CHECK_THAT(missing.err, Contains("none.ply"));
   CHECK(vkmesh_run({"compare", a}).code == 2);
   CHECK(vkmesh_run({"compare", a, a, "--tolerance", "-1"}).code == 2);
+}
+
+TEST_CASE("compare tells at once that surfaces coincide, whichever way they are cut into triangles") {
+  const Scratch scratch;
+  const std::string a = scratch.file("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"),
+                    b = scratch.file("b.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 4\nf 2 3 4\n");
+  const auto result = vkmesh_run({"compare", a, b, "--json"}).json().at("result");
+  for (const char* way : {"two_sided", "first_to_second", "second_to_first"}) {
+    CHECK(result.at(way).at("hausdorff_low") == 0.0);
+    CHECK(result.at(way).at("hausdorff_high") <= 1e-9 * std::sqrt(2.0));
+  }
+}
+
+TEST_CASE("compare --tolerance 0 says nothing about the Hausdorff distance but what the samples show") {
+  const Scratch scratch;
+  IndexedFaceSet raised = grid(3, 4);
+  for (Vec3& p : raised.points) p.z = 0.25f;
+  const std::string a = scratch.file("a.off", off_of(grid(3, 4))), b = scratch.file("b.off", off_of(raised));
+  const auto result = vkmesh_run({"compare", a, b, "--tolerance", "0", "--json"}).json().at("result");
+  for (const char* way : {"two_sided", "first_to_second", "second_to_first"}) {
+    CHECK(result.at(way).at("hausdorff_low").get<double>() == Approx(0.25));
+    CHECK(result.at(way).at("hausdorff_high").is_null());
+  }
+  CHECK_THAT(vkmesh_run({"compare", a, b, "--tolerance", "0"}).out, Contains("at least 0.25"));
 }

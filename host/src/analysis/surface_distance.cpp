@@ -23,6 +23,8 @@ using glm::cross;
 using glm::dot;
 
 constexpr std::size_t kSamplesBetweenReports = 8192;
+/// Of the diagonal: bounds of the Hausdorff distance that are this low count as near enough.
+constexpr double kZero = 1e-10;
 
 using detail::Triangle, detail::squared_distance;
 
@@ -40,11 +42,35 @@ DVec3 normal_of(const Triangle& t) {
   return cross(t[1] - t[0], t[2] - t[0]);
 }
 
+/// Of the corners in use.
+Bounds bounds_of(const TriangleSurface& surface) {
+  Bounds bounds;
+  for (const std::uint32_t corner : surface.corners) bounds.add(surface.points[corner]);
+  return bounds;
+}
+
+/// What a distance between points of a surface is off by at most: they are rounded to doubles, and so is it.
+double rounding_of(const Bounds& bounds) {
+  double largest = 0;
+  for (int k = 0; k < 3; ++k)
+    largest = std::max({largest, std::fabs(static_cast<double>(bounds.low[k])),
+                        std::fabs(static_cast<double>(bounds.high[k]))});
+  return 0x1p-49 * largest;
+}
+
 /// Bounds the one-sided Hausdorff distance from one surface to the triangles of a tree.
 class HausdorffBounds {
  public:
-  HausdorffBounds(const TriangleSurface& from, const detail::TriangleTree& tree, double low, double tolerance)
-      : from_(from), tree_(tree), low2_(low * low), factor2_((1 + tolerance) * (1 + tolerance)) {}
+  /// Some sample of `from` is `low` away. `enough` is a distance that need not be told from 0, `rounding`
+  /// what a computed one may be off by.
+  HausdorffBounds(const TriangleSurface& from, const detail::TriangleTree& tree, double low, double tolerance,
+                  double enough, double rounding)
+      : from_(from),
+        tree_(tree),
+        low2_(low * low),
+        factor2_((1 + tolerance) * (1 + tolerance)),
+        enough2_(enough * enough),
+        rounding_(rounding) {}
 
   /// Errors: kInterrupted, told by `progress` (which hears `done` again and again).
   Result<void> run(DistanceSummary& summary, const Progress& progress, double done) {
@@ -60,65 +86,139 @@ class HausdorffBounds {
     for (std::size_t c = 0; c < from_.corners.size(); c += 3)
       add(points[from_.corners[c]], points[from_.corners[c + 1]], points[from_.corners[c + 2]]);
     // The piece with the largest bound first. What is left when it is near enough is near enough as well.
-    std::size_t splits = 0;
-    while (!pieces_.empty() && pieces_.front().high2 > low2_ * factor2_ && splits < kMostSplits) {
-      if (progress && splits++ % kSamplesBetweenReports == 0 && !progress(done))
+    for (std::size_t splits = 0;
+         !pieces_.empty() && !is_near_enough(pieces_.front().high2) && splits < kMostSplits; ++splits) {
+      if (progress && splits % kSamplesBetweenReports == 0 && !progress(done))
         return fail(ErrorCode::kInterrupted, "the comparison was cancelled");
       std::pop_heap(pieces_.begin(), pieces_.end());
       const Piece piece = pieces_.back();
       pieces_.pop_back();
-      const Point ab = measured((piece.a.place + piece.b.place) / 2.0, piece.a.nearest);
-      const Point bc = measured((piece.b.place + piece.c.place) / 2.0, piece.b.nearest);
-      const Point ca = measured((piece.c.place + piece.a.place) / 2.0, piece.c.nearest);
-      add(piece.a, ab, ca);
-      add(piece.b, bc, ab);
-      add(piece.c, ca, bc);
-      add(ab, bc, ca);
+      if (!(piece.high2 > kFar2 * near_enough2()) || !cut_along_edge(piece)) quarter(piece);
     }
     const double high2 = pieces_.empty() ? passed2_ : std::max(passed2_, pieces_.front().high2);
-    summary.hausdorff_low = std::sqrt(low2_);
-    summary.hausdorff_high = std::sqrt(std::max(low2_, high2));
+    summary.hausdorff_low = std::max(0.0, std::sqrt(low2_) - rounding_);
+    summary.hausdorff_high = std::sqrt(std::max(low2_, high2)) + rounding_;
     return {};
   }
 
  private:
-  /// Where surfaces coincide but for rounding, no share of the distance is reached.
   static constexpr std::size_t kMostSplits = 4'000'000;
+  /// How much too large the bound of a piece is that is cut along edges: quartering it would take about so
+  /// many splits, and few where it is less; squared.
+  static constexpr double kFar2 = 64;
+  /// A piece is cut along edges that are no shorter than half of its longest side; squared.
+  static constexpr double kLongest2 = 4;
 
   struct Point {
     DVec3 place{0.0};
     std::uint32_t nearest = 0;
   };
   struct Piece {
-    Point a, b, c;
+    std::array<Point, 3> corner;
     double high2;
     friend bool operator<(const Piece& x, const Piece& y) { return x.high2 < y.high2; }
   };
+
+  [[nodiscard]] double near_enough2() const { return std::max(low2_ * factor2_, enough2_); }
+  [[nodiscard]] bool is_near_enough(double high2) const { return high2 <= near_enough2(); }
 
   Point measured(const DVec3& place, std::uint32_t hint) {
     low2_ = std::max(low2_, tree_.nearest(place, hint));
     return {place, hint};
   }
 
+  /// How far a piece reaches from a triangle; squared.
+  [[nodiscard]] double reach2(const Piece& piece, std::uint32_t triangle) const {
+    const Triangle& t = tree_.at(triangle);
+    return std::max({squared_distance(piece.corner[0].place, t), squared_distance(piece.corner[1].place, t),
+                     squared_distance(piece.corner[2].place, t)});
+  }
+
   void add(const Point& a, const Point& b, const Point& c) {
-    double high2 = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t near : {a.nearest, b.nearest, c.nearest}) {
-      const Triangle& t = tree_.at(near);
-      high2 = std::min(high2, std::max({squared_distance(a.place, t), squared_distance(b.place, t),
-                                        squared_distance(c.place, t)}));
-    }
-    if (high2 <= low2_ * factor2_) {
-      passed2_ = std::max(passed2_, high2);
+    Piece piece{{a, b, c}, std::numeric_limits<double>::infinity()};
+    for (const Point& corner : piece.corner)
+      piece.high2 = std::min(piece.high2, reach2(piece, corner.nearest));
+    if (is_near_enough(piece.high2)) {
+      passed2_ = std::max(passed2_, piece.high2);
       return;
     }
-    pieces_.push_back({a, b, c, high2});
+    pieces_.push_back(piece);
     std::push_heap(pieces_.begin(), pieces_.end());
+  }
+
+  void quarter(const Piece& piece) {
+    const auto& [a, b, c] = piece.corner;
+    const Point ab = measured((a.place + b.place) / 2.0, a.nearest);
+    const Point bc = measured((b.place + c.place) / 2.0, b.nearest);
+    const Point ca = measured((c.place + a.place) / 2.0, c.nearest);
+    add(a, ab, ca);
+    add(b, bc, ab);
+    add(c, ca, bc);
+    add(ab, bc, ca);
+  }
+
+  /// Where two planes lie on each other, or nearly so, no piece across an edge of the other surface is ever
+  /// small enough for one triangle there. Cuts it along the edge that goes deepest through it; false if it is
+  /// large beside the edges there.
+  bool cut_along_edge(const Piece& piece) {
+    // Corners may lie on edges, and be as near to triangles beyond.
+    const auto& corners = piece.corner;
+    const Point middle =
+        measured((corners[0].place + corners[1].place + corners[2].place) / 3.0, corners[0].nearest);
+    if (const double high2 = reach2(piece, middle.nearest); is_near_enough(high2)) {
+      passed2_ = std::max(passed2_, high2);
+      return true;
+    }
+    std::array<double, 3> sides{};
+    double deepest = 4 * rounding_;
+    std::uint32_t under = 0;
+    double longest2 = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const DVec3 side = corners[(k + 1) % 3].place - corners[k].place;
+      longest2 = std::max(longest2, dot(side, side));
+    }
+    for (const std::uint32_t near :
+         {middle.nearest, corners[0].nearest, corners[1].nearest, corners[2].nearest}) {
+      const Triangle& t = tree_.at(near);
+      const DVec3 normal = normal_of(t);
+      for (std::size_t e = 0; e < 3; ++e) {
+        const DVec3 along = t[(e + 1) % 3] - t[e], inward = cross(normal, along);
+        const double length2 = dot(inward, inward);
+        if (!(length2 > 0) || longest2 > kLongest2 * dot(along, along)) continue;
+        std::array<double, 3> s{};
+        for (std::size_t k = 0; k < 3; ++k) s[k] = dot(inward, corners[k].place - t[e]) / std::sqrt(length2);
+        const double depth = std::min(std::max({s[0], s[1], s[2]}), -std::min({s[0], s[1], s[2]}));
+        if (depth <= deepest) continue;
+        deepest = depth;
+        sides = s;
+        under = near;
+      }
+    }
+    if (deepest <= 4 * rounding_) return false;
+    for (double& s : sides)
+      if (std::fabs(s) <= 4 * rounding_) s = 0;
+    // a alone is on its side.
+    std::size_t alone = 0;
+    while (sides[alone] == 0 || sides[alone] * sides[(alone + 1) % 3] > 0 ||
+           sides[alone] * sides[(alone + 2) % 3] > 0)
+      ++alone;
+    const Point &a = corners[alone], &b = corners[(alone + 1) % 3], &c = corners[(alone + 2) % 3];
+    const auto crossing = [&](const Point& q, double side) {
+      if (side == 0) return q;
+      return measured(a.place + (sides[alone] / (sides[alone] - side)) * (q.place - a.place), under);
+    };
+    const double side_b = sides[(alone + 1) % 3], side_c = sides[(alone + 2) % 3];
+    const Point ab = crossing(b, side_b), ac = crossing(c, side_c);
+    add(a, ab, ac);
+    if (side_b != 0) add(ab, b, c);
+    if (side_c != 0) add(ab, c, ac);
+    return true;
   }
 
   const TriangleSurface& from_;
   const detail::TriangleTree& tree_;
   double low2_;  ///< Some point is this far away.
-  double factor2_;
+  double factor2_, enough2_, rounding_;
   double passed2_ = 0;  ///< No point of the pieces let go is further away.
   std::vector<Piece> pieces_;
 };
@@ -174,9 +274,15 @@ Result<DistanceSummary> one_sided(const TriangleSurface& from, const TriangleSur
   summary.root_mean_square = std::sqrt(sum2 / samples);
   summary.maximum = std::sqrt(maximum2);
   if (angles > 0) summary.mean_normal_angle = angle_sum / static_cast<double>(angles);
+  Bounds both = bounds_of(from);
+  const double diagonal = both.diagonal();
+  both += bounds_of(to);
+  const double rounding = rounding_of(both);
+  summary.hausdorff_low = std::max(0.0, summary.maximum - rounding);
   if (options.hausdorff_tolerance > 0)
-    VKMESH_CHECK(HausdorffBounds(from, tree, summary.maximum, options.hausdorff_tolerance)
-                     .run(summary, progress, begin + 0.5));
+    VKMESH_CHECK(
+        HausdorffBounds(from, tree, summary.maximum, options.hausdorff_tolerance, kZero * diagonal, rounding)
+            .run(summary, progress, begin + 0.5));
   return summary;
 }
 
@@ -190,12 +296,6 @@ Result<void> check(const TriangleSurface& surface) {
   for (std::size_t f = 0; f < surface.corners.size() / 3; ++f) total += area(triangle(surface, f));
   if (!(total > 0)) return fail(ErrorCode::kUnsuitable, "a surface without area has no samples to compare");
   return {};
-}
-
-double diagonal_of(const TriangleSurface& surface) {
-  Bounds bounds;
-  for (const std::uint32_t corner : surface.corners) bounds.add(surface.points[corner]);
-  return bounds.diagonal();
 }
 
 }  // namespace
@@ -225,7 +325,7 @@ Result<SurfaceDistance> surface_distance(const TriangleSurface& a, const Triangl
     SurfaceDistance distance;
     VKMESH_TRY(distance.a_to_b, one_sided(a, b, options, progress, 0.0));
     VKMESH_TRY(distance.b_to_a, one_sided(b, a, options, progress, 0.5));
-    distance.diagonal = diagonal_of(a);
+    distance.diagonal = bounds_of(a).diagonal();
     return distance;
   });
 }

@@ -241,7 +241,10 @@ TEST_CASE("the Hausdorff distance lies between its bounds, and these as near as 
     CHECK(spheres.a_to_b.hausdorff_high <= (1 + tolerance) * (1 + 1e-6));
   }
   options.hausdorff_tolerance = 0;
-  CHECK(surface_distance(surface(icosphere(1)), surface(icosphere(2)), options)->a_to_b.hausdorff_high == 0);
+  const SurfaceDistance of_samples =
+      surface_distance(surface(icosphere(1)), surface(icosphere(2)), options).value();
+  CHECK(of_samples.a_to_b.hausdorff_low == Approx(of_samples.a_to_b.maximum));
+  CHECK(std::isinf(of_samples.two_sided().hausdorff_high));
   options.hausdorff_tolerance = -1;
   CHECK(surface_distance(surface(icosphere(1)), surface(icosphere(2)), options).error().code ==
         ErrorCode::kUsage);
@@ -252,6 +255,118 @@ TEST_CASE("a surface and itself have a Hausdorff distance of nothing", "[distanc
   options.hausdorff_tolerance = 0.01;
   const SurfaceDistance d = surface_distance(surface(icosphere(3)), surface(icosphere(3)), options).value();
   CHECK(d.two_sided().hausdorff_high < 1e-9);  // Rounding alone.
+}
+
+namespace {
+
+/// Turned about an axis that is none of the coordinates'.
+void turn(IndexedFaceSet& mesh) {
+  for (Vec3& p : mesh.points) {
+    const Vec3 q(0.6f * p.x - 0.8f * p.y, 0.8f * p.x + 0.6f * p.y, p.z);
+    p = {q.x, 0.28f * q.y - 0.96f * q.z, 0.96f * q.y + 0.28f * q.z};
+  }
+}
+
+}  // namespace
+
+TEST_CASE("surfaces that coincide have a Hausdorff distance of nothing at once, however they are cut",
+          "[distance]") {
+  IndexedFaceSet one_diagonal = test::grid(1, 1), other_diagonal = one_diagonal;
+  other_diagonal.corners = {0, 1, 2, 1, 3, 2};
+  REQUIRE(one_diagonal.corners != other_diagonal.corners);
+  IndexedFaceSet plate = test::grid(40, 25), whole = test::grid(1, 1);
+  for (Vec3& p : whole.points) p *= Vec3(40.0f, 25.0f, 1.0f);
+  // Moved within the plane, so that no edge of the one lies along edges of the other.
+  IndexedFaceSet moved = plate;
+  test::jitter(moved, 0.2f, 3);
+  for (std::size_t v = 0; v < plate.points.size(); ++v) {
+    moved.points[v].z = 0;
+    for (int k = 0; k < 2; ++k)
+      if (const float end = k == 0 ? 40.0f : 25.0f; plate.points[v][k] == 0.0f || plate.points[v][k] == end)
+        moved.points[v][k] = plate.points[v][k];
+  }
+  const struct {
+    IndexedFaceSet a, b;
+  } pairs[] = {{one_diagonal, other_diagonal},
+               {plate, whole},
+               {plate, moved},
+               {moved, whole},
+               {test::cube(), test::fine_cube(20)},
+               {test::fine_cube(7), test::fine_cube(9)}};
+  for (const auto& pair : pairs)
+    for (const bool turned : {false, true}) {
+      IndexedFaceSet a = pair.a, b = pair.b;
+      if (turned) turn(a), turn(b);
+      CAPTURE(a.face_count(), b.face_count(), turned);
+      SurfaceDistanceOptions options;
+      options.samples = 1;
+      options.hausdorff_tolerance = 0.01;
+      int reports = 0;
+      const SurfaceDistance d =
+          surface_distance(surface(a), surface(b), options, [&](double) { return ++reports > 0; }).value();
+      for (const DistanceSummary& side : {d.a_to_b, d.b_to_a}) {
+        if (turned) {
+          // Rounding to floats makes them differ by some 1e-7 of their size, which is bounded like any other.
+          CHECK(side.hausdorff_high <= 1e-6 * d.diagonal);
+          CHECK(side.hausdorff_high <= std::max(side.hausdorff_low * 1.0101, 1e-9 * d.diagonal));
+        } else {
+          CHECK(side.hausdorff_low == 0);
+          CHECK(side.hausdorff_high <= 1e-12 * d.diagonal);
+        }
+      }
+      // One report in 8192 splits.
+      CHECK(reports <= 12);
+    }
+}
+
+TEST_CASE("bounds of the Hausdorff distance hold what a search over all triangles finds", "[distance]") {
+  SurfaceDistanceOptions options;
+  options.samples = 5;
+  std::mt19937 random(4);
+  for (int i = 0; i < 12; ++i) {
+    CAPTURE(i);
+    // Over the same square: flat in part, with other triangles, and some points off the plane.
+    IndexedFaceSet a = test::grid(3, 3), b = test::grid(4, 4);
+    for (Vec3& p : b.points) p *= Vec3(0.75f, 0.75f, 1.0f);
+    for (IndexedFaceSet* mesh : {&a, &b}) {
+      test::jitter(*mesh, 0.1f, static_cast<std::uint32_t>(random()));
+      for (Vec3& p : mesh->points) p.z = random() % 4 == 0 ? 0.25f * p.z * static_cast<float>(i) : 0.0f;
+      if (i % 2 == 1) turn(*mesh);
+    }
+    options.hausdorff_tolerance = i % 3 == 0 ? 0.001 : 0.1;
+    const SurfaceDistance d = surface_distance(surface(a), surface(b), options).value();
+    const auto check = [&](const IndexedFaceSet& from, const IndexedFaceSet& to,
+                           const DistanceSummary& side) {
+      constexpr int kSteps = 8;
+      double most = 0, spacing = 0;
+      for (std::size_t f = 0; f < from.face_count(); ++f) {
+        const DVec3 p(from.points[from.face(f)[0]]), q(from.points[from.face(f)[1]]),
+            r(from.points[from.face(f)[2]]);
+        spacing = std::max({spacing, glm::distance(p, q) / kSteps, glm::distance(p, r) / kSteps});
+        for (int u = 0; u <= kSteps; ++u)
+          for (int v = 0; u + v <= kSteps; ++v) {
+            const DVec3 at = p + (u / double{kSteps}) * (q - p) + (v / double{kSteps}) * (r - p);
+            double nearest = std::numeric_limits<double>::infinity();
+            for (std::size_t g = 0; g < to.face_count() && nearest > most; ++g) {
+              const DVec3 x(to.points[to.face(g)[0]]), y(to.points[to.face(g)[1]]),
+                  z(to.points[to.face(g)[2]]);
+              // No point of a triangle lies farther from a corner than another corner does.
+              if (glm::distance(at, x) - std::max(glm::distance(x, y), glm::distance(x, z)) < nearest)
+                nearest = std::min(nearest, brute_force(at, x, y, z));
+            }
+            most = std::max(most, nearest);
+          }
+      }
+      // The search ends within 1e-8 of a triangle, and a point lies within `spacing` of one that was tried.
+      CHECK(side.hausdorff_high >= most - 1e-8);
+      CHECK(side.hausdorff_low <= most + spacing);
+      CHECK(side.hausdorff_low <= side.hausdorff_high);
+      CHECK(side.hausdorff_high <=
+            std::max(side.hausdorff_low * (1 + options.hausdorff_tolerance) + 1e-12, 1e-9 * d.diagonal));
+    };
+    check(a, b, d.a_to_b);
+    check(b, a, d.b_to_a);
+  }
 }
 
 TEST_CASE("normals differ by the angle between the surfaces", "[distance]") {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
@@ -14,7 +15,8 @@ struct SurfaceDistanceOptions {
   std::size_t samples = 200000;  ///< Points taken on each surface, at least 1. Default 200,000.
   std::uint32_t seed =
       1;  ///< Seeds their positions; the same seed gives the same samples everywhere. Default 1.
-  /// How far apart the bounds of the Hausdorff distance may be, as a share of it. 0 (default) asks for none.
+  /// How far apart the bounds of the Hausdorff distance may be, as a share of it. With 0 (default) it is
+  /// bounded by the samples alone.
   double hausdorff_tolerance = 0;
 };
 
@@ -23,9 +25,9 @@ struct DistanceSummary {
   double mean = 0;
   double root_mean_square = 0;
   double maximum = 0;  ///< The largest of the samples: a lower bound of the one-sided Hausdorff distance.
-  /// Between these the one-sided Hausdorff distance lies, whatever the samples; both 0 unless
-  /// `hausdorff_tolerance` asks for them.
-  double hausdorff_low = 0, hausdorff_high = 0;
+  /// Between these the one-sided Hausdorff distance lies, rounding counted in. Unless `hausdorff_tolerance`
+  /// asks for better ones: the largest of the samples, and infinity.
+  double hausdorff_low = 0, hausdorff_high = std::numeric_limits<double>::infinity();
   /// Angle between the normals of a sample's triangle and of the nearest one, radians, in [0, π]. Triangles
   /// without area have no part in it.
   double mean_normal_angle = 0, maximum_normal_angle = 0;
@@ -51,7 +53,10 @@ struct SurfaceDistance {
 /// Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff distance computation for general polygonal models", 2009):
 /// the distance to one triangle is convex, so that over a piece it is largest at a corner; the least of this
 /// over a few triangles near the piece is an upper bound, and the distance of any of its points a lower one.
-/// Errors:
+/// Pieces are quartered until they are as small as the triangles near them, and then cut along the edges of
+/// these: over one triangle the distance to its plane is told exactly, so that surfaces that coincide have a
+/// bound of 0 but for rounding. An upper bound below 1e-10 of the diagonal is near enough whatever the
+/// tolerance; after four million splits the bounds are farther apart than was asked. Errors:
 /// kUnsuitable for a surface without area; kUsage for no samples, a tolerance that is negative, a corner out
 /// of range or a count of corners that is no multiple of three; kInterrupted; kOutOfMemory.
 [[nodiscard]] Result<SurfaceDistance> surface_distance(const TriangleSurface& a, const TriangleSurface& b,
