@@ -13,9 +13,12 @@ Result<void> run(Job& job, const VertexNormalsOptions& options) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(Backend backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate(mesh));
+  // Kernels take triangles.
   VKMESH_TRY(const std::vector<Vec3> normals,
-             backend.run(vertex_normals_pass(options), {half_edges, mesh.points}));
+             half_edges.is_triangles()
+                 ? backend.run(vertex_normals_pass(options), {half_edges, mesh.points})
+                 : job.timed("compute", [&] { return vertex_normals(half_edges, mesh.points, options); }));
 
   std::size_t undefined = 0;
   std::vector<float> values;
@@ -38,9 +41,10 @@ Result<void> run(Job& job, const VertexNormalsOptions& options) {
 void add_normals(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("normals", "Computes vertex normals");
   command->footer(
-      "Written as the PLY properties nx ny nz (OBJ: vn), beside what the input holds. Polygons stay; their "
-      "normals "
-      "are those of\nthe triangles they are cut into. Every device gives the same bytes.\n\n"
+      "Written as the PLY properties nx ny nz (OBJ: vn), beside what the input holds. A polygon counts as "
+      "one "
+      "face, by its\nown area and its own angles, and meshes that have some are computed on the CPU. Every "
+      "device gives the same bytes.\n\n"
       "Example:\n  vkmesh normals data/dragon/dragon_vrip.ply.gz normals.ply");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
@@ -49,7 +53,7 @@ void add_normals(CLI::App& app, Program& program) {
       {"area", NormalWeights::kArea}, {"angle", NormalWeights::kAngle}, {"uniform", NormalWeights::kUniform}};
   command
       ->add_option("--weights", options->weights,
-                   "How much each triangle around a vertex counts: by its area (default), by its angle at\n"
+                   "How much each face around a vertex counts: by its area (default), by its angle at\n"
                    "the vertex, or uniform")
       ->type_name("area|angle|uniform")
       ->transform(one_of(weights));

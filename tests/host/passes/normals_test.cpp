@@ -1,7 +1,9 @@
 // Triangle and vertex normals against textbook formulas in double precision, written without regard to their
 // order of operations.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -127,5 +129,85 @@ TEST_CASE("normals into memory of the caller are those of their own, whatever it
   for (const NormalWeights weights : {NormalWeights::kArea, NormalWeights::kAngle, NormalWeights::kUniform}) {
     REQUIRE(vertex_normals(sphere, set.points, at_vertices, {weights}));
     CHECK(at_vertices == vertex_normals(sphere, set.points, {weights}).value());
+  }
+}
+
+TEST_CASE("vertex normals of a cube of six quads are the diagonals, whichever corners come first") {
+  const double expected = 1 / std::sqrt(3.0);
+  for (std::uint32_t turns = 0; turns < 64; ++turns) {
+    IndexedFaceSet set = test::quad_cube();
+    for (std::uint32_t f = 0; f < 3; ++f) {
+      const auto quad = set.corners.begin() + 4 * f;
+      std::rotate(quad, quad + (turns >> (2 * f) & 3u), quad + 4);
+    }
+    const HalfEdgeMesh mesh = test::half_edges(set);
+    for (const NormalWeights weights :
+         {NormalWeights::kArea, NormalWeights::kAngle, NormalWeights::kUniform}) {
+      const std::vector<Vec3> normals = vertex_normals(mesh, set.points, {weights}).value();
+      for (std::size_t v = 0; v < normals.size(); ++v) {
+        const DVec3 outward = 2.0 * DVec3(set.points[v]) - DVec3(1.0);
+        CHECK(length(DVec3(normals[v]) - expected * outward) < 4 * 0x1p-23);
+      }
+    }
+  }
+}
+
+TEST_CASE("vertex normals of polygons agree with double precision, whatever their shape") {
+  // A prism over an L, walls of quads beside caps of six corners, one of them reflex; and the same bent.
+  IndexedFaceSet prism;
+  for (const float z : {0.0f, 1.0f})
+    for (const auto& [x, y] : {std::pair(0, 0), {2, 0}, {2, 1}, {1, 1}, {1, 3}, {0, 3}})
+      prism.points.emplace_back(static_cast<float>(x), static_cast<float>(y), z);
+  prism.face_offsets = {0, 6, 12};
+  prism.corners = {5, 4, 3, 2, 1, 0, 6, 7, 8, 9, 10, 11};
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    prism.corners.insert(prism.corners.end(), {i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i});
+    prism.face_offsets.push_back(static_cast<std::uint32_t>(prism.corners.size()));
+  }
+  IndexedFaceSet bent = prism;
+  test::jitter(bent, 0.1f, 4);
+  // One that mixes triangles with quads, in no order.
+  IndexedFaceSet mixed = test::quad_cube();
+  mixed.corners.insert(mixed.corners.end(), {mixed.corners[0], mixed.corners[2], mixed.corners[3]});
+  mixed.corners.erase(mixed.corners.begin() + 3);
+  mixed.face_offsets = {0, 3, 7, 11, 15, 19, 23, 26};
+  test::jitter(mixed, 0.1f, 5);
+
+  for (const IndexedFaceSet& set : {prism, bent, mixed})
+    for (const NormalWeights weights :
+         {NormalWeights::kArea, NormalWeights::kAngle, NormalWeights::kUniform}) {
+      const auto normals = vertex_normals(test::half_edges(set), set.points, {weights});
+      REQUIRE(normals);
+      std::vector<DVec3> expected(set.points.size(), DVec3(0.0));
+      for (std::size_t f = 0; f < set.face_count(); ++f) {
+        const auto face = set.face(f);
+        const auto at = [&](std::size_t i) { return DVec3(set.points[face[i % face.size()]]); };
+        DVec3 newell(0.0);
+        for (std::size_t i = 0; i < face.size(); ++i) newell += test::cross(at(i), at(i + 1));
+        for (std::size_t i = 0; i < face.size(); ++i) {
+          const DVec3 next = at(i + 1) - at(i), previous = at(i + face.size() - 1) - at(i);
+          double angle = std::acos(dot(next, previous) / (length(next) * length(previous)));
+          if (dot(test::cross(next, previous), newell) < 0) angle = 2 * 3.14159265358979 - angle;
+          expected[face[i]] += weights == NormalWeights::kArea    ? newell
+                               : weights == NormalWeights::kAngle ? angle / length(newell) * newell
+                                                                  : newell / length(newell);
+        }
+      }
+      for (std::size_t v = 0; v < expected.size(); ++v)
+        CHECK(length(DVec3((*normals)[v]) - expected[v] / length(expected[v])) < 0x1p-18);
+    }
+}
+
+TEST_CASE("vertex normals of triangles are the same bytes in a mesh of polygons") {
+  for (const IndexedFaceSet& set : test::noisy_shapes()) {
+    const HalfEdgeMesh mesh = test::half_edges(set);
+    std::vector<std::uint32_t> offsets;
+    for (std::uint32_t f = 0; f <= mesh.face_count(); ++f) offsets.push_back(3 * f);
+    const auto copy = [](auto span) { return std::vector<std::uint32_t>(span.begin(), span.end()); };
+    const HalfEdgeMesh polygons = HalfEdgeMesh::from_arrays(copy(mesh.origins()), copy(mesh.twins()),
+                                                            copy(mesh.leadings()), std::move(offsets));
+    for (const NormalWeights weights : {NormalWeights::kArea, NormalWeights::kAngle, NormalWeights::kUniform})
+      CHECK(vertex_normals(polygons, set.points, {weights}).value() ==
+            vertex_normals(mesh, set.points, {weights}).value());
   }
 }

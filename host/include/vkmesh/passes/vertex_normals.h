@@ -11,7 +11,7 @@
 
 namespace vkmesh {
 
-/// How much each triangle around a vertex counts.
+/// How much each face around a vertex counts.
 enum class NormalWeights : std::uint8_t {
   kArea,     ///< By its area.
   kAngle,    ///< By its angle at the vertex (G. Thürmer, C. A. Wüthrich, "Computing vertex normals from
@@ -23,11 +23,14 @@ struct VertexNormalsOptions {
   NormalWeights weights = NormalWeights::kArea;
 };
 
-/// N_v = Σ w_T N_T / |Σ w_T N_T| over the triangles T around v, summed in ascending order of faces (lecture,
-/// "Normals"). Unit vectors; the zero vector where no direction is defined: isolated vertices, and fans of
-/// degenerate triangles (lengths below about 4e-19 units and areas below about 4e-31 square units count as
-/// zero, see docs/exactness.md). The reference of shaders/passes/vertex_normals*.comp, equal to them bit for
-/// bit. O(half-edges). Errors: kUnsuitable unless triangles; kUsage unless one position for each vertex;
+/// N_v = Σ w_F N_F / |Σ w_F N_F| over the faces F around v, summed in ascending order (lecture, "Normals").
+/// A polygon counts as one face, by its own area and its own inner angles: its normal is that of its area
+/// vector (M. E. Newell, see I. E. Sutherland, R. F. Sproull, R. A. Schumacker, "A characterization of ten
+/// hidden-surface algorithms", 1974), which no cut into triangles changes. Unit vectors; the zero vector
+/// where no direction is defined: isolated vertices, and fans of degenerate faces (lengths below about 4e-19
+/// units and areas below about 4e-31 square units count as zero, see docs/exactness.md). For triangles the
+/// reference of shaders/passes/vertex_normals*.comp, equal to them bit for bit; polygons have no kernel, and
+/// the same bytes on every machine. O(half-edges). Errors: kUsage unless one position for each vertex;
 /// kOutOfMemory.
 [[nodiscard]] Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
                                                        std::span<const Vec3> positions,
