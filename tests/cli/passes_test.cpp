@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 #include "output.h"
 #include "program.h"
 #include "support/shapes.h"
+#include "support/vectors.h"
 
 using namespace vkmesh;
 using namespace vkmesh::test;
@@ -35,6 +37,17 @@ TEST_CASE("normals of a sphere point outwards, and are named nx ny nz") {
     const Vec3 p = mesh.points[i];
     // Faces span about 8 degrees here, so the mean of those around a point strays by far less than cos 0.99.
     CHECK(p.x * n[3 * i] + p.y * n[3 * i + 1] + p.z * n[3 * i + 2] > 0.99f);
+  }
+}
+
+TEST_CASE("normals of a cube of quads are its diagonals") {
+  const Scratch scratch;
+  const std::string in = scratch.file("in.off", kCubeOff), out = scratch.path("out.ply");
+  for (const char* weights : {"area", "angle", "uniform"}) {
+    REQUIRE(vkmesh_run({"normals", in, out, "--device", "cpu", "--weights", weights}).code == 0);
+    const IndexedFaceSet mesh = mesh_in(out);
+    REQUIRE_FALSE(mesh.is_triangles());
+    for (const float n : floats_of(mesh, "normal")) CHECK(std::abs(n) == Approx(1 / std::sqrt(3.0)));
   }
 }
 
@@ -219,10 +232,11 @@ TEST_CASE("smooth --keep-volume keeps it, of closed surfaces only") {
   for (const std::string method : {"laplacian", "taubin", "bilateral"}) {
     CAPTURE(method);
     std::vector<std::string> arguments = {"smooth", in, out, "--method", method, "--device", "cpu", "--json"};
+    arguments.push_back("--no-keep-volume");
     REQUIRE(vkmesh_run(arguments).code == 0);
     // One part in ten thousand is far more than float sums of a sphere are off.
     CHECK(volume(out) != Approx(before).epsilon(1e-4));
-    arguments.push_back("--keep-volume");
+    arguments.back() = "--keep-volume";
     const Outcome outcome = vkmesh_run(arguments);
     REQUIRE(outcome.code == 0);
     CHECK(outcome.json().at("result").at("keep_volume") == true);
@@ -236,6 +250,59 @@ TEST_CASE("smooth --keep-volume keeps it, of closed surfaces only") {
     CHECK_THAT(outcome.err, Contains("closed"));
   }
   CHECK(scratch.names() == std::vector<std::string>{"in.off", "open.off", "out.ply"});
+}
+
+TEST_CASE("smooth by bilateral keeps the volume of what is closed, and says that it does") {
+  // Alone it moves a sphere of these widths outward by more than a hundredth.
+  const Scratch scratch;
+  const std::string in = scratch.file("in.off", off_of(icosphere(3))), out = scratch.path("out.ply");
+  const auto radius = [&](std::vector<std::string> more, bool keeps) {
+    more.insert(more.begin(), {"smooth", in, out, "--method", "bilateral", "--device", "cpu", "--json"});
+    const Outcome outcome = vkmesh_run(more);
+    REQUIRE(outcome.code == 0);
+    CHECK(outcome.json().at("result").at("keep_volume") == keeps);
+    double sum = 0;
+    const IndexedFaceSet mesh = mesh_in(out);
+    for (const Vec3& p : mesh.points) sum += length(DVec3(p));
+    return sum / static_cast<double>(mesh.points.size());
+  };
+  CHECK(radius({}, true) == Approx(1).epsilon(1e-3));
+  CHECK(radius({"--no-keep-volume"}, false) > 1.01);
+  // An open surface has none to keep.
+  const std::string open = scratch.file("open.off", off_of(grid(3, 3)));
+  const Outcome outcome =
+      vkmesh_run({"smooth", open, out, "--method", "bilateral", "--device", "cpu", "--json"});
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.json().at("result").at("keep_volume") == false);
+}
+
+TEST_CASE("smooth refuses a lambda and mu that make noise grow, and tells of shapes that grow") {
+  const Scratch scratch;
+  const std::string in = scratch.file("in.off", off_of(icosphere(2))), out = scratch.path("out.ply");
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"smooth", in, out, "--device", "cpu", "--json"});
+    return vkmesh_run(more);
+  };
+  for (const std::vector<std::string>& pair : {std::vector<std::string>{"--lambda", "1"},
+                                               {"--lambda", "0.8"},
+                                               {"--lambda", "0.1", "--mu", "-1"},
+                                               {"--lambda", "0", "--mu", "-0.5"}}) {
+    const Outcome outcome = run(pair);
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.err, Contains("--lambda " + pair[1] + " with --mu") && Contains("1/lambda + 1/mu"));
+  }
+  CHECK_FALSE(std::filesystem::exists(out));
+  for (const std::vector<std::string>& pair :
+       {std::vector<std::string>{"--lambda", "0.69", "--iterations", "50"},
+        {"--lambda", "1", "--method", "laplacian"},
+        {"--lambda", "0.6307", "--mu", "-0.6732"}}) {
+    const Outcome outcome = run(pair);
+    REQUIRE(outcome.code == 0);
+    CHECK(outcome.json().at("notes").empty());
+    for (const Vec3& p : mesh_in(out).points) CHECK(length(DVec3(p)) < 1.2);
+  }
+  // (1 - 0.5 k)(1 + 0.5263 k) is largest at k = 0.05, where it is 1.000658.
+  CHECK_THAT(run({"--iterations", "1000"}).json().at("notes").dump(), Contains("by up to 1.93"));
 }
 
 TEST_CASE("smooth keeps the boundary unless told otherwise") {

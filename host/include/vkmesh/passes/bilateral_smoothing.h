@@ -28,10 +28,12 @@ struct BilateralSmoothingOptions {
 /// vertex at the mean of the centroids, by a_q and a Gaussian of width σ_f / 2. The spatial ones end at twice
 /// their width. Nearness is that of space: pieces that lie side by side smooth each other. Faces are summed
 /// in the order of a grid of cells, and in ascending order in a cell: the same bytes on any number of
-/// threads. Triangles without area do not count; isolated vertices, and those that no face is near to, stay.
-/// O(vertices × faces within 2 σ_f).
-/// Errors: kUsage unless 2^-40 ≤ σ_f, σ_g ≤ 2^40; kUnsuitable unless triangles, and for a mesh more than 2^20
-/// σ_f wide; kUsage unless one position for each vertex; kOutOfMemory; kInterrupted.
+/// threads. Tangent planes of a curved surface pass outside of it, so that it grows: the radius of a
+/// sphere whose mean edge is 0.15 of it by 8.1 % with σ_f and σ_g of 4 and 1 mean edges, by 4.7 % with 2 and
+/// 1, by 1.7 % with 2 and 0.2; restore_volume() takes that back from closed surfaces. Triangles without area
+/// do not count; isolated vertices, and those that no face is near to, stay. O(vertices × faces within 2
+/// σ_f). Errors: kUsage unless 2^-40 ≤ σ_f, σ_g ≤ 2^40; kUnsuitable unless triangles, and for a mesh more
+/// than 2^20 σ_f wide; kUsage unless one position for each vertex; kOutOfMemory; kInterrupted.
 [[nodiscard]] Result<std::vector<Vec3>> bilateral_smoothing(const HalfEdgeMesh& mesh,
                                                             std::span<const Vec3> positions,
                                                             const BilateralSmoothingOptions& options,

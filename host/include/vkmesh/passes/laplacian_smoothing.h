@@ -36,12 +36,21 @@ struct LaplacianSmoothingOptions {
   SmoothingWeights weights = SmoothingWeights::kUniform;
   /// In [−1, 0]. Unless 0, each iteration is a step by λ and a step by μ, which together keep low frequencies
   /// (G. Taubin, "A signal processing approach to fair surface design", 1995): μ a little beyond −λ, such as
-  /// −0.53 for λ = 0.5. Default 0.
+  /// −0.53 for λ = 0.5. smoothing_gain() tells what such a pair makes larger. Default 0.
   float mu = 0.0f;
   /// Bit v % 32 of word v / 32: vertex v stays. Empty: none. On a device DeviceSmoothing::locked takes this
   /// instead.
   std::span<const std::uint32_t> locked = {};
 };
+
+/// What one iteration multiplies the frequency k of a surface by: (1 − λk)(1 − μk), for the eigenvalues k of
+/// the mesh's Laplacian, which lie in [0, 2] for both kinds of weights (G. Taubin, "Curve and surface
+/// smoothing without shrinkage", 1995, §3 and §4). Iterations raise it to a power: where it exceeds 1 in
+/// magnitude, they diverge. Below the pass-band frequency 1/λ + 1/μ it does so by little, at most at half of
+/// that, as long as μ is near −λ; up to k = 2 it does not where 1/λ + 1/μ ≤ 2 and λ ≤ (1 − μ) / (1 − 2μ).
+[[nodiscard]] inline double smoothing_gain(double lambda, double mu, double k) {
+  return (1 - lambda * k) * (1 - mu * k);
+}
 
 /// v ← v + λ (weighted mean of its neighbours − v), `iterations` times, all vertices at once (lecture, "Mesh
 /// smoothing"). Neighbours are summed in NodeNeighbours order; isolated vertices stay. The reference of
