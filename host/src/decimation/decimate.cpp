@@ -1,6 +1,7 @@
 // The stages of a decimation: check, prepare, coarsen, collapse or remove, gather. `reference.cpp` says what
 // all of it comes to.
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -36,12 +37,15 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   const DecimateOptions& options = packed.options();
 
   // Prepare
+  Stop stop(progress, begun, options.target.seconds.value_or(std::numeric_limits<double>::infinity()));
   VKMESH_TRY(BuiltMesh built, build_mesh(points, corners));
+  VKMESH_CHECK(stop.check());
   CollapseMesh& mesh = built.mesh;
   const Frame& frame = built.frame;
   lock_vertices(mesh, corners, options);
   std::optional<Wedges> wedges = find_wedges(mesh, points.size(), options);
-  sum_quadrics(mesh, constraint_weights(options.curves, wedges));
+  if (!stop.is_set()) sum_quadrics(mesh, constraint_weights(options.curves, wedges));
+  VKMESH_CHECK(stop.check());
   std::optional<AttributeQuadrics> attributes;
   if (wedges)
     attributes.emplace(mesh, points.size(), std::move(*wedges), options.attributes, corners,
@@ -52,8 +56,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     pruned = prune_components(mesh,
                               static_cast<float>(frame.scale * options.prune_size->in_units(frame.diagonal)));
   Criteria criteria(options.weights, options.bounds, frame, mesh);
-  Limits limits = limits_of(options, mesh.face_count(), frame);
-  limits.begun = begun;
+  const Limits limits = limits_of(options, mesh.face_count(), frame);
   DecimationState state{.mesh = mesh,
                         .limits = limits,
                         .faces = mesh.face_count() - pruned.faces,
@@ -63,12 +66,14 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         .criteria = criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
                         .boundary_kept = options.curves.boundary == DecimateBoundary::kKept,
                         .mean_weight = mean_weight_of(mesh),
-                        .sizes = sizes};
+                        .sizes = sizes,
+                        .stop = &stop};
+  VKMESH_CHECK(stop.check());
 
   // Coarsen; collapse or remove
-  coarsen_if_far_from_target(state);
+  if (!stop.is_set()) coarsen_if_far_from_target(state);
   const auto remove = attributes ? remove_cheapest<true> : remove_cheapest<false>;
-  VKMESH_TRY(Outcome outcome, remove(state, options.operation, progress));
+  VKMESH_TRY(Outcome outcome, remove(state, options.operation));
 
   // Gather
   BasicDecimated<Point> result = gather(mesh, points, built.is_in_order, frame, outcome, state.attributes);

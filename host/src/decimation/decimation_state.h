@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <thread>
 #include <vector>
 
+#include <vkmesh/base/progress.h>
+#include <vkmesh/base/result.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/decimation/reason.h>
 
@@ -22,9 +26,53 @@ class Criteria;
 struct Limits {
   std::size_t faces = 0, vertices = 0;
   double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
-  std::chrono::steady_clock::time_point begun;
-  double seconds = std::numeric_limits<double>::infinity();  // from then on
   float cos_deviation = 0;
+};
+
+/// Whether to stop before the target, because the time is over or the caller wants it. Long steps ask() again
+/// and again, on any thread; what they have done by then is whole.
+class Stop {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// From `begun` on, for so many seconds. `progress` is called on this thread alone, and must outlive this.
+  Stop(const Progress& progress, Clock::time_point begun, double seconds)
+      : progress_(progress), begun_(begun), seconds_(seconds), heard_(begun) {}
+
+  [[nodiscard]] bool is_set() const { return is_cancelled() || is_time_over(); }
+  [[nodiscard]] bool is_cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool is_time_over() const { return time_over_.load(std::memory_order_relaxed); }
+
+  /// Looks at the clock, and calls the caller if that was long ago.
+  void ask() {
+    const Clock::time_point now = Clock::now();
+    if (std::chrono::duration<double>(now - begun_).count() >= seconds_)
+      time_over_.store(true, std::memory_order_relaxed);
+    if (std::this_thread::get_id() == thread_ && now - heard_ >= kLong) report(fraction_);
+  }
+  /// Tells the caller how much is done; on the thread of the caller.
+  void report(double fraction) {
+    fraction_ = fraction;
+    heard_ = Clock::now();
+    if (progress_ && !progress_(fraction)) cancelled_.store(true, std::memory_order_relaxed);
+  }
+  /// Errors: kInterrupted where the caller wants it.
+  [[nodiscard]] Result<void> check() {
+    ask();
+    if (is_cancelled()) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+    return {};
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kLong{250};
+
+  const Progress& progress_;
+  Clock::time_point begun_;
+  double seconds_;
+  Clock::time_point heard_;  // of the caller
+  double fraction_ = 0;
+  std::thread::id thread_ = std::this_thread::get_id();
+  std::atomic<bool> cancelled_ = false, time_over_ = false;
 };
 
 /// From how many faces on work is shared out: of each partition whose edges are collapsed, and of each range
@@ -72,8 +120,14 @@ struct DecimationState {
   bool boundary_kept = false;
   double mean_weight = 0;  // of all vertices at first
   PartitionSizes sizes = {};
+  Stop* stop = nullptr;  // none
 
-  [[nodiscard]] bool reached() const { return faces <= limits.faces || vertices <= limits.vertices; }
+  [[nodiscard]] bool at_target() const { return faces <= limits.faces || vertices <= limits.vertices; }
+  /// Whether no more is to be removed.
+  [[nodiscard]] bool reached() const { return at_target() || (stop != nullptr && stop->is_set()); }
+  void ask() {
+    if (stop != nullptr) stop->ask();
+  }
 };
 
 /// What happens in one of several partitions of a surface, while threads work side by side.
@@ -85,7 +139,8 @@ class PartitionState {
               .limits = limits_,
               .keep_events = all.keep_events,
               .boundary_kept = all.boundary_kept,
-              .mean_weight = all.mean_weight} {
+              .mean_weight = all.mean_weight,
+              .stop = all.stop} {
     limits_.faces = 1;  // a removal takes two
     limits_.vertices = 0;
   }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -87,6 +88,9 @@ class EdgeCollapses {
   void fill(Prepare&& prepare, Put&& put) {
     constexpr std::size_t kAhead = 64;
     const auto make = [this, &prepare](std::size_t begin, std::size_t end, First& block) {
+      block.count = 0;
+      share_->state.ask();
+      if (share_->state.reached()) return;
       CollapseMesh::Face* const faces = &mesh_.face(0);
       const VertexRecord* const vertices = vertices_.data();
       std::uint32_t* const ids = block.ids.data();
@@ -134,8 +138,7 @@ class EdgeCollapses {
   /// Steps while anything is due by `last`, a bucket of the queue, and no limit is met.
   void run(std::uint32_t last) {
     share_->last = last;
-    while (!share_->state.reached() && step()) {
-    }
+    while (!share_->state.reached() && step()) share_->state.ask();
     put_back();
     forget_touched();
   }
@@ -174,7 +177,8 @@ class EdgeCollapses {
 
   /// Counts what blocks each edge that is left.
   void count_blocked() {
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f)
+    for (std::uint32_t f = 0; f < mesh_.face_count() && !share_->state.reached(); ++f) {
+      if (f % kFirstFaces == 0) share_->state.ask();
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
         if (!mesh_.alive(h) || !mesh_.has_tag(h, kParked) ||
             (!mesh_.is_ghost(mesh_.twin(h)) && mesh_.twin(h) < h))
@@ -187,6 +191,7 @@ class EdgeCollapses {
           why = Reason::kBoundary;
         ++share_->state.outcome.blocked[why];
       }
+    }
   }
 
  private:
@@ -242,8 +247,12 @@ class EdgeCollapses {
     if constexpr (Placement::kByCriteria) {
       for (std::size_t i = 0; i < edges.size(); ++i) {
         const VertexRecord &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
-        record_collapse(change, mesh_, edges[i],
-                        Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}));
+        if (share_->state.criteria->ranks_by_faces())
+          record_collapse(change, mesh_, edges[i],
+                          Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}),
+                          kManyEdges);
+        else
+          record_length(change, mesh_, edges[i]);
         ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, change);
       }
     } else {
@@ -580,23 +589,40 @@ class EdgeCollapses {
     }
   }
 
-  // All edges at v and at its neighbours cost something else now.
+  // From so many edges at a vertex on, ranks are told by as many of its faces, and those of its edges alone
+  // are told again that end where something has changed: all that all of them see would make a vertex of k
+  // neighbours cost O(k^3).
+  static constexpr std::size_t kManyEdges = 64;
+
+  [[nodiscard]] std::size_t edges_at(std::uint32_t v, std::size_t most) const {
+    std::size_t edges = 0;
+    const std::uint32_t first = vertices_[v].leading;
+    std::uint32_t out = first;
+    do {
+      ++edges;
+      out = mesh_.around_vertex(out);
+    } while (out != first && edges < most);
+    return edges;
+  }
+
+  // All edges at v cost something else now; so do those at its neighbours if their faces count.
   void refresh_around(std::uint32_t v) {
+    constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+    if (!share_->state.criteria->ranks_by_faces()) return refresh(v, edges_at(v, kAll));
     const std::uint32_t start = vertices_[v].leading;
     std::uint32_t h = start;
+    bool many = false;
     do {
       if (const std::uint32_t r = mesh_.target(h); r != mesh_.apex()) {
-        std::size_t edges = 0;
-        const std::uint32_t first = vertices_[r].leading;
-        std::uint32_t out = first;
-        do {
-          ++edges;
-          out = mesh_.around_vertex(out);
-        } while (out != first);
-        refresh(r, edges);
+        const std::size_t edges = edges_at(r, kManyEdges);
+        if (edges < kManyEdges)
+          refresh(r, edges);
+        else
+          many = true;
       }
       h = mesh_.around_vertex(h);
     } while (h != start);
+    if (many) refresh(v, edges_at(v, kAll));
   }
 
   // Parked edges near v may have become legal.

@@ -2,6 +2,6 @@
 
 namespace vkmesh::detail {
 
-template Result<Outcome> remove_cheapest<false>(DecimationState&, DecimateOperation, const Progress&);
+template Result<Outcome> remove_cheapest<false>(DecimationState&, DecimateOperation);
 
 }  // namespace vkmesh::detail

@@ -2,6 +2,6 @@
 
 namespace vkmesh::detail {
 
-template Result<Outcome> remove_cheapest<true>(DecimationState&, DecimateOperation, const Progress&);
+template Result<Outcome> remove_cheapest<true>(DecimationState&, DecimateOperation);
 
 }  // namespace vkmesh::detail

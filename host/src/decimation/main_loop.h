@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <utility>
 
@@ -28,58 +27,56 @@ inline double progress_of(const DecimationState& state, std::size_t first_faces,
 /// `Removals` has, as PartitionedCollapses does, fill(), step(), kStep, how many removals a step is about,
 /// and count_blocked(), which counts what blocks the candidates that are left.
 template <class Removals>
-Result<Outcome> run_removals(DecimationState& state, const Progress& progress) {
-  Removals removals(state);
-  if (!state.reached()) removals.fill();
-  const std::size_t first_faces = state.faces, first_vertices = state.vertices;
-  for (std::size_t steps = 0; !state.reached(); ++steps) {
-    if (steps % (kRemovalsBetweenReports / Removals::kStep) == 0) {
-      if (progress && !progress(progress_of(state, first_faces, first_vertices)))
-        return fail(ErrorCode::kInterrupted, "decimation was cancelled");
-      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - state.limits.begun;
-      if (passed.count() >= state.limits.seconds) {
-        state.outcome.stop = DecimateStop::kTimeLimit;
-        break;
-      }
+Result<Outcome> run_removals(DecimationState& state) {
+  Stop& stop = *state.stop;
+  if (!state.reached()) {
+    Removals removals(state);
+    removals.fill();
+    const std::size_t first_faces = state.faces, first_vertices = state.vertices;
+    for (std::size_t steps = 0; !state.reached(); ++steps) {
+      if (steps % (kRemovalsBetweenReports / Removals::kStep) == 0)
+        stop.report(progress_of(state, first_faces, first_vertices));
+      stop.ask();
+      if (state.reached() || removals.step() || state.reached()) continue;
+      removals.count_blocked();
+      const bool by_error = state.outcome.blocked[Reason::kErrorBound] > 0;
+      state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
+      break;
     }
-    if (removals.step()) continue;
-    removals.count_blocked();
-    const bool by_error = state.outcome.blocked[Reason::kErrorBound] > 0;
-    state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
-    break;
   }
-  if (progress && !progress(1.0)) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
+  if (!stop.is_cancelled()) stop.report(1.0);
+  VKMESH_CHECK(stop.check());
+  if (state.outcome.stop == DecimateStop::kTargetReached && !state.at_target())
+    state.outcome.stop = DecimateStop::kTimeLimit;
   return std::move(state.outcome);
 }
 
 /// Costs that may fall, as those of criteria, need a heap.
 template <class Placement, bool kAttributes>
-Result<Outcome> collapse_edges(DecimationState& state, const Progress& progress) {
+Result<Outcome> collapse_edges(DecimationState& state) {
   if (state.criteria != nullptr && state.criteria->ranks())
-    return run_removals<PartitionedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state,
-                                                                                              progress);
-  return run_removals<PartitionedCollapses<Placement, LazyQueue, kAttributes>>(state, progress);
+    return run_removals<PartitionedCollapses<ByCriteria<Placement>, ExactQueue, kAttributes>>(state);
+  return run_removals<PartitionedCollapses<Placement, LazyQueue, kAttributes>>(state);
 }
 
 template <bool kAttributes>
-Result<Outcome> remove_vertices(DecimationState& state, const Progress& progress) {
+Result<Outcome> remove_vertices(DecimationState& state) {
   if (state.criteria != nullptr && state.criteria->ranks())
-    return run_removals<VertexRemovals<ExactQueue, kAttributes>>(state, progress);
-  return run_removals<VertexRemovals<LazyQueue, kAttributes>>(state, progress);
+    return run_removals<VertexRemovals<ExactQueue, kAttributes>>(state);
+  return run_removals<VertexRemovals<LazyQueue, kAttributes>>(state);
 }
 
 template <bool kAttributes>
-Result<Outcome> remove_cheapest(DecimationState& state, DecimateOperation operation,
-                                const Progress& progress) {
+Result<Outcome> remove_cheapest(DecimationState& state, DecimateOperation operation) {
   switch (operation) {
     case DecimateOperation::kEdgeCollapse:
-      return collapse_edges<OptimalPlacement, kAttributes>(state, progress);
+      return collapse_edges<OptimalPlacement, kAttributes>(state);
     case DecimateOperation::kHalfEdgeCollapse:
-      return collapse_edges<EndPlacement, kAttributes>(state, progress);
+      return collapse_edges<EndPlacement, kAttributes>(state);
     case DecimateOperation::kVertexRemoval:
       break;
   }
-  return remove_vertices<kAttributes>(state, progress);
+  return remove_vertices<kAttributes>(state);
 }
 
 }  // namespace vkmesh::detail

@@ -70,8 +70,9 @@ class VertexRemovals {
           park(ids[i], Reason::kFoldOver);
       }
       count = 0;
+      state_.ask();
     };
-    for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
+    for (std::uint32_t v = 0; v < mesh_.apex() && !state_.reached(); ++v) {
       const VertexRecord& vertex = vertices_[v];
       if (!vertex.alive()) continue;
       if (vertex.has(VertexRecord::kLocked)) {
@@ -118,7 +119,8 @@ class VertexRemovals {
   /// Counts what blocks each vertex that is left.
   void count_blocked() {
     const auto count = [&](Reason why) { ++state_.outcome.blocked[why]; };
-    for (std::uint32_t v = 0; v < mesh_.apex(); ++v) {
+    for (std::uint32_t v = 0; v < mesh_.apex() && !state_.reached(); ++v) {
+      if (v % kRemovalsBetweenReports == 0) state_.ask();
       if (!vertices_[v].alive()) continue;
       if (vertices_[v].has(VertexRecord::kLocked)) {
         count(state_.boundary_kept && mesh_.on_boundary(v) ? Reason::kBoundary : Reason::kLocked);

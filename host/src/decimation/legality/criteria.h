@@ -29,6 +29,8 @@ class Criteria {
   [[nodiscard]] bool ranks() const {
     return weights_.density > 0 || weights_.aspect_ratio > 0 || weights_.normals > 0;
   }
+  /// Whether `cost` looks at faces, and not at the length alone.
+  [[nodiscard]] bool ranks_by_faces() const { return weights_.aspect_ratio > 0 || weights_.normals > 0; }
   /// What the shape of a triangle weighs when the quadric error weighs 1.
   [[nodiscard]] float shape_over_quadric() const {
     constexpr double kLeast = 1e-3;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <vkmesh/math/vec.h>
@@ -47,8 +48,13 @@ inline LocalChange::Face face_of(const CollapseMesh& mesh, std::uint32_t record)
   return result;
 }
 
-/// Records the collapse of the edge of h, whose ends move to this place.
+/// Records the collapse of the edge of h, whose ends move to this place; of each end the first `most` faces
+/// from the edge on.
 void record_collapse(LocalChange& change, const CollapseMesh& mesh, std::uint32_t h,
-                     const std::array<float, 3>& place);
+                     const std::array<float, 3>& place,
+                     std::size_t most = std::numeric_limits<std::size_t>::max());
+
+/// Records nothing of it but the length of the edge. O(1).
+void record_length(LocalChange& change, const CollapseMesh& mesh, std::uint32_t h);
 
 }  // namespace vkmesh::detail

@@ -48,6 +48,7 @@ void RangeCoarsening::run_all() {
     prefetch(mesh_.faces() + vertices_[v].leading / 4);
     candidates.push_back(v);
     if (candidates.size() < kAtOnce) continue;
+    state_.ask();
     coarsen(candidates);
     candidates.clear();
   }
@@ -59,7 +60,8 @@ void RangeCoarsening::run(std::span<const std::uint32_t> candidates) {
     from = std::min(from, candidates.size());
     return candidates.subspan(from, std::min(kAtOnce, candidates.size() - from));
   };
-  for (std::size_t i = 0; i < candidates.size(); i += kAtOnce) {
+  for (std::size_t i = 0; i < candidates.size() && !state_.reached(); i += kAtOnce) {
+    state_.ask();
     for (const std::uint32_t v : chosen(i + 2 * kAtOnce)) prefetch(&vertices_[v]);
     for (const std::uint32_t v : chosen(i + kAtOnce))
       prefetch(mesh_.faces() + (vertices_[v].alive() ? vertices_[v].leading / 4 : 0));

@@ -71,8 +71,10 @@ class PartitionedCollapses {
       if (!partitions_.empty()) return round();
     }
     Worker& worker = mine();
-    for (std::size_t i = 0; i < kStep / Queue::kBatch && !state_.reached(); ++i)
+    for (std::size_t i = 0; i < kStep / Queue::kBatch && !state_.reached(); ++i) {
+      if (i % 8 == 0) state_.ask();
       if (!worker.step()) return i > 0;
+    }
     return true;
   }
 

@@ -72,7 +72,6 @@ Limits limits_of(const DecimateOptions& options, std::size_t faces, const Frame&
     limits.faces = std::max(limits.faces, static_cast<std::size_t>(share));
   }
   limits.vertices = options.target.vertices.value_or(0);
-  if (options.target.seconds) limits.seconds = *options.target.seconds;
   if (options.bounds.error) {
     const double error = frame.scale * options.bounds.error->in_units(frame.diagonal);
     limits.error2 = error * error;
