@@ -59,7 +59,7 @@ int run(int argc, char** argv) {
     return fail_with(
         {ErrorCode::kUsage, "--json and an output of - both want standard output: choose one", {}}, true);
 
-  install_signal_handlers();
+  install_signal_handlers(program.options.json);
   Job job(program.command, program.options);
   Result<void> done = program.action(job);
   if (done) done = job.print();

@@ -21,10 +21,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_interrupted = 0, g_writing = 0;
+/// What is said on standard error and on standard output by a program that is ended where it is.
+std::string g_last_words, g_last_object;
+/// Seconds that a step may go on without looking at the flag.
+constexpr unsigned kSecondsToHear = 1;
 
 extern "C" void on_signal(int) {
   g_interrupted = 1;
+  alarm(kSecondsToHear);
+}
+
+extern "C" void on_alarm(int) {
+  if (g_writing != 0) {
+    alarm(kSecondsToHear);  // what is half written has to go first
+    return;
+  }
+  for (const auto& [stream, text] :
+       {std::pair(STDERR_FILENO, &g_last_words), {STDOUT_FILENO, &g_last_object}})
+    if (::write(stream, text->data(), text->size()) < 0) break;
+  _exit(static_cast<int>(ErrorCode::kInterrupted));
 }
 
 constexpr const char* kTimings[] = {"read",    "consolidate", "open",  "upload", "device",
@@ -47,6 +63,20 @@ std::string milliseconds(double ms) {
   char text[32];
   std::snprintf(text, sizeof text, ms < 10 ? "%.1f ms" : "%.0f ms", ms);
   return text;
+}
+
+std::string sentence_of(const Error& error) {
+  return "vkmesh: " + error.describe() + "\n";
+}
+
+Json object_of(const Error& error) {
+  const auto or_null = [](const std::optional<std::uint64_t>& n) { return n ? Json(*n) : Json(nullptr); };
+  return {{"error",
+           {{"code", static_cast<int>(error.code)},
+            {"message", error.message},
+            {"file", error.where.file.empty() ? Json(nullptr) : Json(error.where.file)},
+            {"line", or_null(error.where.line)},
+            {"byte", or_null(error.where.byte)}}}};
 }
 
 Json names_of(const std::vector<Channel>& channels) {
@@ -109,7 +139,10 @@ std::string file_row(const IndexedFaceSet& mesh, const std::string& file, FileFo
 
 }  // namespace
 
-void install_signal_handlers() {
+void install_signal_handlers(bool json) {
+  const Error interrupt{ErrorCode::kInterrupted, "interrupted", {}};
+  g_last_words = (isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "") + sentence_of(interrupt);
+  if (json) g_last_object = text_of(object_of(interrupt));
   struct sigaction action = {};
   action.sa_handler = on_signal;
   // A second signal ends a program that does not get to look at the flag; without SA_RESTART reads return.
@@ -117,6 +150,7 @@ void install_signal_handlers() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGALRM, on_alarm);
   // A closed pipe and a limit on the size of files then fail the write, which says so.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -124,6 +158,14 @@ void install_signal_handlers() {
 
 bool interrupted() {
   return g_interrupted != 0;
+}
+
+WritingGuard::WritingGuard(bool writes) : writes_(writes) {
+  if (writes_) g_writing = 1;
+}
+
+WritingGuard::~WritingGuard() {
+  if (writes_) g_writing = 0;
 }
 
 ProgressLine::ProgressLine(bool shown) : shown_(shown), terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -318,6 +360,7 @@ Result<void> Job::print() {
 }
 
 void Job::print_error(const Error& error) {
+  alarm(0);
   progress_.erase();
   cli::print_error(error, options_.json);
 }
@@ -420,16 +463,8 @@ CLI::Validator count_up_to(std::uint64_t high) {
 }
 
 void print_error(const Error& error, bool json) {
-  std::fprintf(stderr, "vkmesh: %s\n", error.describe().c_str());
-  if (!json) return;
-  const auto or_null = [](const std::optional<std::uint64_t>& n) { return n ? Json(*n) : Json(nullptr); };
-  const Json object = {{"error",
-                        {{"code", static_cast<int>(error.code)},
-                         {"message", error.message},
-                         {"file", error.where.file.empty() ? Json(nullptr) : Json(error.where.file)},
-                         {"line", or_null(error.where.line)},
-                         {"byte", or_null(error.where.byte)}}}};
-  static_cast<void>(put(stdout, text_of(object)));
+  std::fputs(sentence_of(error).c_str(), stderr);
+  if (json) static_cast<void>(put(stdout, text_of(object_of(error))));
 }
 
 std::string grouped(std::size_t n) {

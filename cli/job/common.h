@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,9 +41,22 @@ struct CommonOptions {
 };
 
 /// After this, interrupt and termination signals make interrupted() true, and a closed pipe is an ordinary
-/// error.
-void install_signal_handlers();
+/// error. A step that has not looked within a second is ended with the program, which then says on standard
+/// error, and with `json` on standard output, what it says of any interrupt.
+void install_signal_handlers(bool json);
 [[nodiscard]] bool interrupted();
+
+/// While one lives that writes, the program is not ended in the middle of a step.
+class WritingGuard {
+ public:
+  explicit WritingGuard(bool writes);
+  ~WritingGuard();
+  WritingGuard(const WritingGuard&) = delete;
+  WritingGuard& operator=(const WritingGuard&) = delete;
+
+ private:
+  bool writes_;
+};
 
 /// The percentage line on standard error. On a terminal it overwrites and finally erases itself; elsewhere it
 /// writes a line for each tenth done.
@@ -79,6 +93,7 @@ class Job {
   template <class Step>
   auto timed(const char* name, Step&& step) -> decltype(step()) {
     if (interrupted()) return fail(ErrorCode::kInterrupted, "interrupted");
+    const WritingGuard guard(std::string_view(name) == "write");
     const auto start = std::chrono::steady_clock::now();
     auto result = std::forward<Step>(step)();
     book(name, milliseconds_since(start));

@@ -128,13 +128,20 @@ Result<detail::Matching> match(const IndexedFaceSet& mesh) {
 }
 
 Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options, const Progress& progress) {
+  const auto tick = [&](double done) -> Result<void> {
+    if (!progress || progress(done)) return {};
+    return fail(ErrorCode::kInterrupted, "consolidation was interrupted");
+  };
+  VKMESH_CHECK(tick(0));
   Consolidated result;
   Welded welded;
   if (options.weld) {
     VKMESH_TRY(welded, weld(mesh, *options.weld));
     mesh = std::move(welded.mesh);
+    VKMESH_CHECK(tick(0.05));
   }
   VKMESH_TRY(detail::Matching matching, match(mesh));
+  VKMESH_CHECK(tick(0.1));
   ConsolidateReport& report = result.report = report_of(std::move(matching.defects));
   if (options.weld) {
     report.welded_points = welded.merged_points;
@@ -173,6 +180,7 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     name_before_welding(result.source_point, welded.point_of, report.points);
   result.mesh = HalfEdgeMesh::from_arrays(result.face_set.corners, std::move(matching.twin),
                                           std::move(matching.leading), result.face_set.face_offsets);
+  VKMESH_CHECK(tick(1));
   return result;
 }
 
