@@ -182,7 +182,8 @@ TEST_CASE("A full device behind standard output is noticed") {
 }
 
 TEST_CASE("An interrupt or a termination ends the work with exit code 130 and leaves no file") {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  // The alarm is what an interrupt sets for steps that do not hear it.
+  for (const int signal : {SIGINT, SIGTERM, SIGALRM}) {
     CAPTURE(signal);
     const Scratch scratch;
     RunOptions options;
@@ -196,5 +197,21 @@ TEST_CASE("An interrupt or a termination ends the work with exit code 130 and le
     CHECK_THAT(outcome.err, Contains("vkmesh: interrupted"));
     CHECK(outcome.out.empty());
     CHECK(scratch.names().empty());
+  }
+}
+
+TEST_CASE("An interrupt that a step does not hear is told in JSON like any other") {
+  const Scratch scratch;
+  for (const int signal : {SIGINT, SIGALRM}) {
+    RunOptions options;
+    options.signal = signal;
+    options.signal_after = "simplifying";
+    const Outcome outcome =
+        vkmesh_run({"simplify", std::string(VKMESH_DATA_DIR) + "/dragon/dragon_vrip.ply.gz",
+                    scratch.path("out.ply"), "--ratio", "0.001", "--progress", "always", "--json"},
+                   options);
+    CHECK(outcome.code == 130);
+    CHECK(outcome.json().at("error").at("code") == 130);
+    CHECK(outcome.json().at("error").at("message") == "interrupted");
   }
 }
