@@ -93,7 +93,7 @@ class HausdorffBounds {
       std::pop_heap(pieces_.begin(), pieces_.end());
       const Piece piece = pieces_.back();
       pieces_.pop_back();
-      if (!(piece.high2 > kFar2 * near_enough2()) || !cut_along_edge(piece)) quarter(piece);
+      if (!cut_along_edge(piece)) quarter(piece);
     }
     const double high2 = pieces_.empty() ? passed2_ : std::max(passed2_, pieces_.front().high2);
     summary.hausdorff_low = std::max(0.0, std::sqrt(low2_) - rounding_);
@@ -103,11 +103,9 @@ class HausdorffBounds {
 
  private:
   static constexpr std::size_t kMostSplits = 4'000'000;
-  /// How much too large the bound of a piece is that is cut along edges: quartering it would take about so
-  /// many splits, and few where it is less; squared.
-  static constexpr double kFar2 = 64;
-  /// A piece is cut along edges that are no shorter than half of its longest side; squared.
-  static constexpr double kLongest2 = 4;
+  /// Of a piece that is cut along edges the longest side is so many times as long as its bound may be, or
+  /// quartering it would be done sooner; and it is not so many times as long as the edge. Squared.
+  static constexpr double kLong2 = 256, kLonger2 = 4;
 
   struct Point {
     DVec3 place{0.0};
@@ -158,11 +156,17 @@ class HausdorffBounds {
   }
 
   /// Where two planes lie on each other, or nearly so, no piece across an edge of the other surface is ever
-  /// small enough for one triangle there. Cuts it along the edge that goes deepest through it; false if it is
-  /// large beside the edges there.
+  /// small enough for one triangle there. Cuts it along the edge that goes deepest through it; false where it
+  /// is to be quartered.
   bool cut_along_edge(const Piece& piece) {
-    // Corners may lie on edges, and be as near to triangles beyond.
     const auto& corners = piece.corner;
+    double longest2 = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const DVec3 side = corners[(k + 1) % 3].place - corners[k].place;
+      longest2 = std::max(longest2, dot(side, side));
+    }
+    if (longest2 <= kLong2 * near_enough2()) return false;
+    // Corners may lie on edges, and be as near to triangles beyond.
     const Point middle =
         measured((corners[0].place + corners[1].place + corners[2].place) / 3.0, corners[0].nearest);
     if (const double high2 = reach2(piece, middle.nearest); is_near_enough(high2)) {
@@ -172,11 +176,6 @@ class HausdorffBounds {
     std::array<double, 3> sides{};
     double deepest = 4 * rounding_;
     std::uint32_t under = 0;
-    double longest2 = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const DVec3 side = corners[(k + 1) % 3].place - corners[k].place;
-      longest2 = std::max(longest2, dot(side, side));
-    }
     for (const std::uint32_t near :
          {middle.nearest, corners[0].nearest, corners[1].nearest, corners[2].nearest}) {
       const Triangle& t = tree_.at(near);
@@ -184,7 +183,7 @@ class HausdorffBounds {
       for (std::size_t e = 0; e < 3; ++e) {
         const DVec3 along = t[(e + 1) % 3] - t[e], inward = cross(normal, along);
         const double length2 = dot(inward, inward);
-        if (!(length2 > 0) || longest2 > kLongest2 * dot(along, along)) continue;
+        if (!(length2 > 0) || longest2 > kLonger2 * dot(along, along)) continue;
         std::array<double, 3> s{};
         for (std::size_t k = 0; k < 3; ++k) s[k] = dot(inward, corners[k].place - t[e]) / std::sqrt(length2);
         const double depth = std::min(std::max({s[0], s[1], s[2]}), -std::min({s[0], s[1], s[2]}));
