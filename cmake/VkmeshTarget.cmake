@@ -9,8 +9,13 @@ function(vkmesh_target target)
     target_compile_options(${target} PRIVATE -Wno-restrict -Wno-maybe-uninitialized -Wno-array-bounds
       -Wno-stringop-overflow)
   endif()
-  # Exactness: no fused multiply-add that the source does not spell (docs/exactness.md).
-  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  # Exactness (docs/exactness.md), whatever the project around asks for: nothing that changes results, and no fused multiply-add
+  # that the source does not spell. The linker would make programs and libraries flush subnormal numbers.
+  target_compile_options(${target} PRIVATE -fno-fast-math -fno-unsafe-math-optimizations -fno-associative-math -fno-reciprocal-math
+    -fno-finite-math-only -fsigned-zeros -ffp-contract=off)
+  target_link_options(${target} PRIVATE -fno-fast-math -fno-unsafe-math-optimizations)
+  # Errors become values where exceptions end, so there must be some.
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fexceptions -frtti>)
   if(VKMESH_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
@@ -28,6 +33,27 @@ function(vkmesh_target target)
       target_compile_options(${target} PRIVATE -fno-sanitize-recover=undefined)
     endif()
     target_link_options(${target} PUBLIC -fsanitize=${VKMESH_SANITIZE})
+  endif()
+endfunction()
+
+# vkmesh_library(TARGET): what every installed library is, besides: it exports what VKMESH_API marks (base/api.h), and nothing else.
+function(vkmesh_library target)
+  vkmesh_target(${target})
+  string(REPLACE vkmesh_ "" name ${target})
+  add_library(vkmesh::${name} ALIAS ${target})
+  # Before 1.0 each minor version may change the binary interface.
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_include_directories(${target}
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL SHARED_LIBRARY)
+    target_compile_definitions(${target} PUBLIC VKMESH_SHARED)
+    if(UNIX AND NOT APPLE) # Instances of the standard library's templates are visible by themselves.
+      target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
+      set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+    endif()
   endif()
 endfunction()
 

@@ -134,7 +134,7 @@ class Device {
 };
 
 /// Runs the arithmetic of the shaders on chosen values. Errors: kNoDevice, naming the function whose result
-/// differs from the host's.
+/// differs from the host's; kInternal where it is the host's that is wrong.
 [[nodiscard]] Result<void> check_exactness(Context& context);
 
 }  // namespace vkmesh::detail

@@ -6,6 +6,10 @@
 #include "base/parallel.h"
 #include "math/vector_kernels.h"
 
+#if defined(__FAST_MATH__) || !defined(__cpp_exceptions)
+#error "vkmesh's sources need exact arithmetic and exceptions, as cmake/VkmeshTarget.cmake asks for them"
+#endif
+
 namespace vkmesh {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -45,9 +46,9 @@ struct Crease {
 /// first vertices, then loops in that of their smallest. `angles`: for each half-edge, as
 /// DihedralAngles::half_edge. O(half-edges), and O(creases) for each round of leaving out. Errors: kUsage
 /// for options out of range, or another number of angles or positions; kOutOfMemory.
-[[nodiscard]] Result<std::vector<Crease>> find_creases(const HalfEdgeMesh& mesh,
-                                                       std::span<const Vec3> positions,
-                                                       std::span<const float> angles,
-                                                       const CreaseOptions& options = {});
+[[nodiscard]] VKMESH_API Result<std::vector<Crease>> find_creases(const HalfEdgeMesh& mesh,
+                                                                  std::span<const Vec3> positions,
+                                                                  std::span<const float> angles,
+                                                                  const CreaseOptions& options = {});
 
 }  // namespace vkmesh

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/triangle_surface.h>
@@ -33,7 +34,7 @@ struct DistanceSummary {
   double mean_normal_angle = 0, maximum_normal_angle = 0;
 };
 
-struct SurfaceDistance {
+struct VKMESH_API SurfaceDistance {
   DistanceSummary a_to_b;  ///< From samples on A to the nearest point of B.
   DistanceSummary b_to_a;
   /// Length of the diagonal of A's bounding box, over the corners in use: divide by it for relative
@@ -59,8 +60,9 @@ struct SurfaceDistance {
 /// tolerance; after four million splits the bounds are farther apart than was asked. Errors:
 /// kUnsuitable for a surface without area; kUsage for no samples, a tolerance that is negative, a corner out
 /// of range or a count of corners that is no multiple of three; kInterrupted; kOutOfMemory.
-[[nodiscard]] Result<SurfaceDistance> surface_distance(const TriangleSurface& a, const TriangleSurface& b,
-                                                       const SurfaceDistanceOptions& options = {},
-                                                       const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<SurfaceDistance> surface_distance(const TriangleSurface& a,
+                                                                  const TriangleSurface& b,
+                                                                  const SurfaceDistanceOptions& options = {},
+                                                                  const Progress& progress = {});
 
 }  // namespace vkmesh

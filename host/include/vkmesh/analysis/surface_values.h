@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/handles.h>
@@ -26,30 +27,30 @@ struct SurfaceEdge {
 // kOutOfMemory.
 
 /// All edges in ascending order of (a, b). Sides of faces from a point to itself are no edges.
-[[nodiscard]] Result<std::vector<SurfaceEdge>> surface_edges(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<std::vector<SurfaceEdge>> surface_edges(const IndexedFaceSet& mesh);
 
 /// For each edge the angle between the normals of its two faces, radians: positive where the surface is
 /// convex there, as seen from outside, negative where it is concave, 0 unless the edge is `opposed`. Normals
 /// of polygons are Newell's.
-[[nodiscard]] Result<std::vector<float>> signed_dihedral_angles(const IndexedFaceSet& mesh,
-                                                                std::span<const SurfaceEdge> edges);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> signed_dihedral_angles(
+    const IndexedFaceSet& mesh, std::span<const SurfaceEdge> edges);
 
 /// For each point the mean curvature, 1 / length: positive on a sphere seen from outside. The integral of
 /// mean curvature along an edge is half its length times its signed angle (D. Cohen-Steiner, J.-M. Morvan,
 /// "Restricted Delaunay triangulations and normal cycle", 2003); each end takes half of it, and divides by a
 /// third of the area of the faces around it. NaN for a point without area around it.
-[[nodiscard]] Result<std::vector<float>> mean_curvatures(const IndexedFaceSet& mesh,
-                                                         std::span<const SurfaceEdge> edges,
-                                                         std::span<const float> signed_angles);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> mean_curvatures(const IndexedFaceSet& mesh,
+                                                                    std::span<const SurfaceEdge> edges,
+                                                                    std::span<const float> signed_angles);
 
 /// For each point the largest magnitude of the angles of its edges; 0 without any.
-[[nodiscard]] Result<std::vector<float>> largest_angles(const IndexedFaceSet& mesh,
-                                                        std::span<const SurfaceEdge> edges,
-                                                        std::span<const float> signed_angles);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> largest_angles(const IndexedFaceSet& mesh,
+                                                                   std::span<const SurfaceEdge> edges,
+                                                                   std::span<const float> signed_angles);
 
 /// For each point the number of its edges.
-[[nodiscard]] Result<std::vector<float>> valences(const IndexedFaceSet& mesh,
-                                                  std::span<const SurfaceEdge> edges);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> valences(const IndexedFaceSet& mesh,
+                                                             std::span<const SurfaceEdge> edges);
 
 struct ConnectedComponents {
   std::vector<float> of_point;     ///< Number of the component; NaN for a point of no face.
@@ -57,19 +58,20 @@ struct ConnectedComponents {
 };
 /// The vertex-connected components: faces that share a point are of one. Components are numbered by faces,
 /// the largest 0; equal ones in order of their first point.
-[[nodiscard]] Result<ConnectedComponents> connected_components(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<ConnectedComponents> connected_components(const IndexedFaceSet& mesh);
 
 /// For each triangle 4√3 area / (sum of squared sides): 1 if equilateral, 0 without area. Errors: kUnsuitable
 /// for polygons.
-[[nodiscard]] Result<std::vector<float>> triangle_qualities(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> triangle_qualities(const IndexedFaceSet& mesh);
 
 /// For each point the area-weighted mean of the normals of the triangles around it, as vertex_normals() gives
 /// for a manifold, bit for bit. Errors: kUnsuitable for polygons, and for coordinates out of its range.
-[[nodiscard]] Result<std::vector<Vec3>> point_normals(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<std::vector<Vec3>> point_normals(const IndexedFaceSet& mesh);
 
 /// For each point its distance to the neighbour that is `neighbours` away in order of distance; where as many
 /// points coincide, the median of all others. 0 for a single point. A tree of halved boxes (J. L. Bentley,
 /// "Multidimensional binary search trees", 1975): O(n log n). Positions must be finite.
-[[nodiscard]] Result<std::vector<float>> point_spacing(std::span<const Vec3> points, unsigned neighbours = 6);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> point_spacing(std::span<const Vec3> points,
+                                                                  unsigned neighbours = 6);
 
 }  // namespace vkmesh

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 
@@ -57,7 +58,7 @@ struct SurfaceTopology {
 /// Faces that repeat a point or have fewer than three corners are left out. O(n α(n)) for n corners, apart
 /// from the small sorts within one point. Errors: kUsage for corners that name no point or offsets that do
 /// not ascend; kUnsuitable for more than 2^32 - 2 corners or points; kOutOfMemory.
-[[nodiscard]] Result<SurfaceTopology> surface_topology(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<SurfaceTopology> surface_topology(const IndexedFaceSet& mesh);
 
 /// What is odd about the elements of a face set, each on its own.
 struct ElementDefects {
@@ -69,6 +70,6 @@ struct ElementDefects {
 };
 
 /// O(n log n) for n corners. Errors as surface_topology().
-[[nodiscard]] Result<ElementDefects> element_defects(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<ElementDefects> element_defects(const IndexedFaceSet& mesh);
 
 }  // namespace vkmesh

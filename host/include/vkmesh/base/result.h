@@ -8,6 +8,8 @@
 
 #include <tl/expected.hpp>
 
+#include <vkmesh/base/api.h>
+
 namespace vkmesh {
 
 /// What went wrong, coarsely. The values are the exit codes of the command line and do not change.
@@ -30,7 +32,7 @@ struct Location {
 };
 
 /// One failure: a code for programs, one sentence for people, and the place.
-struct Error {
+struct VKMESH_API Error {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;
   Location where;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/decimation/reason.h>
@@ -171,7 +172,7 @@ enum class DecimateStop {
 };
 
 /// "target reached", "error bound", "time limit", "no legal collapse".
-[[nodiscard]] std::string name_of(DecimateStop stop);
+[[nodiscard]] VKMESH_API std::string name_of(DecimateStop stop);
 
 /// One collapse or removal. Vertices and faces are the input's.
 template <class Point>
@@ -312,14 +313,16 @@ using Decimated = BasicDecimated<Vec3>;
 /// vertex with a result of a tenth; 28 more where the input's order has no locality; with weights 36 more;
 /// with attributes about 120 more, and 20 for each component. Errors: kUnsuitable unless triangles, finite
 /// and manifold; kUsage for options outside their range; kInterrupted; kOutOfMemory.
-[[nodiscard]] Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                         const DecimateOptions& options, const Progress& progress = {});
-[[nodiscard]] Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,
-                                                     std::span<const DVec3> positions,
-                                                     const DecimateOptions& options,
-                                                     const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<Decimated> decimate(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                                    const DecimateOptions& options,
+                                                    const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<BasicDecimated<DVec3>> decimate(const HalfEdgeMesh& mesh,
+                                                                std::span<const DVec3> positions,
+                                                                const DecimateOptions& options,
+                                                                const Progress& progress = {});
 /// From arrays, without half-edges: faster than to_half_edge_mesh() and the above.
-[[nodiscard]] Result<Decimated> decimate(const TriangleSurface& surface, const DecimateOptions& options,
-                                         const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<Decimated> decimate(const TriangleSurface& surface,
+                                                    const DecimateOptions& options,
+                                                    const Progress& progress = {});
 
 }  // namespace vkmesh

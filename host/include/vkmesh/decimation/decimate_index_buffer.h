@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/mesh/strided_span.h>
 
@@ -35,9 +36,8 @@ struct DecimatedIndexBuffer : DecimationReport {
 /// collapse, the default, is done as the half-edge collapse that leaves all vertices where they are; vertex
 /// removals leave them, too. What is locked, or of faces, is numbered as in the input. O(n log n). Errors: as
 /// `decimate`, but for those of surfaces that are no oriented manifolds; kUsage for corner_groups.
-[[nodiscard]] Result<DecimatedIndexBuffer> decimate_index_buffer(const StridedSpan<Vec3>& points,
-                                                                 std::span<const std::uint32_t> indices,
-                                                                 const DecimateOptions& options,
-                                                                 const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<DecimatedIndexBuffer> decimate_index_buffer(
+    const StridedSpan<Vec3>& points, std::span<const std::uint32_t> indices, const DecimateOptions& options,
+    const Progress& progress = {});
 
 }  // namespace vkmesh

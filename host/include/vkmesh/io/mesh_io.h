@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
@@ -20,12 +21,12 @@ enum class FileFormat { kPly, kObj, kOff, kStl, kGltf, kInventor, kVrml1, kVrml2
 enum class FileEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
 /// "ply", "obj", "off", "stl", "gltf", "iv", "vrml1", "vrml2", "xyz".
-[[nodiscard]] std::string name_of(FileFormat format);
+[[nodiscard]] VKMESH_API std::string name_of(FileFormat format);
 /// "ascii", "binary_little_endian", "binary_big_endian".
-[[nodiscard]] std::string name_of(FileEncoding encoding);
+[[nodiscard]] VKMESH_API std::string name_of(FileEncoding encoding);
 
 /// A difference between a file and the mesh read from it or written to it.
-struct FileNote {
+struct VKMESH_API FileNote {
   /// What happened to what, for programs: "dropped.skin", "rounded.positions". The first word is "dropped"
   /// (content that is not kept), "skipped" (malformed content that is passed over), "rounded" (to fewer
   /// bits), "replaced" (values a format cannot hold), "partial" (elements without a value got a neutral one),
@@ -68,14 +69,16 @@ struct ReadOptions {
 /// fractions of 1, whatever type the file gives them. Errors: kUnreadable (missing, a directory, malformed,
 /// an index out of range, a coordinate that is not finite; with file and line or byte), kOutOfMemory,
 /// kInterrupted.
-[[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
+[[nodiscard]] VKMESH_API Result<MeshFile> read_mesh(const std::filesystem::path& path,
+                                                    const ReadOptions& options = {});
 
 /// The same from memory; `name` stands for the path in errors and its extension serves as the hint.
-[[nodiscard]] Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, const std::string& name,
-                                          const ReadOptions& options = {});
+[[nodiscard]] VKMESH_API Result<MeshFile> parse_mesh(std::span<const std::byte> bytes,
+                                                     const std::string& name,
+                                                     const ReadOptions& options = {});
 
 /// The geometry of a file as an indexed face set; a soup is welded (see weld()).
-[[nodiscard]] Result<IndexedFaceSet> to_indexed_face_set(MeshFile file);
+[[nodiscard]] VKMESH_API Result<IndexedFaceSet> to_indexed_face_set(MeshFile file);
 
 struct WriteOptions {
   FileFormat format = FileFormat::kPly;
@@ -90,30 +93,31 @@ struct WriteOptions {
 
 /// Options from a file name: "a.ply.gz" is a gzipped binary PLY, "a.obj" OBJ, "-" binary PLY.
 /// Errors: kUsage for an extension that no writer serves (the message lists those that exist).
-[[nodiscard]] Result<WriteOptions> write_options_for(const std::filesystem::path& path);
+[[nodiscard]] VKMESH_API Result<WriteOptions> write_options_for(const std::filesystem::path& path);
 
 /// Writes the mesh. The file appears whole or not at all: it is written beside its place, then renamed. "-"
 /// writes to standard output. What the format cannot hold (STL has no attributes) is left out and named in
 /// the returned notes. Normals, uv and colours that are not finite are written as 0. Errors: kNotWritable
 /// (with the system's reason), kUnsuitable (polygons or a point cloud into STL, faces into XYZ),
 /// kOutOfMemory.
-[[nodiscard]] Result<std::vector<FileNote>> write_mesh(const std::filesystem::path& path,
-                                                       const IndexedFaceSet& mesh,
-                                                       const WriteOptions& options);
+[[nodiscard]] VKMESH_API Result<std::vector<FileNote>> write_mesh(const std::filesystem::path& path,
+                                                                  const IndexedFaceSet& mesh,
+                                                                  const WriteOptions& options);
 
 /// What write_mesh() would return, without a file: the bytes are made and let go.
-[[nodiscard]] Result<std::vector<FileNote>> losses_of(const IndexedFaceSet& mesh,
-                                                      const WriteOptions& options);
+[[nodiscard]] VKMESH_API Result<std::vector<FileNote>> losses_of(const IndexedFaceSet& mesh,
+                                                                 const WriteOptions& options);
 
 /// The same into memory.
-[[nodiscard]] Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh,
-                                                         const WriteOptions& options);
+[[nodiscard]] VKMESH_API Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh,
+                                                                    const WriteOptions& options);
 
 /// Writes polylines, each the points of one in order, as the lines ("l") of an OBJ file that holds the points
 /// they name; `offset` is added to each. Otherwise as write_mesh(). Errors: kUsage for an index out of range;
 /// kNotWritable; kOutOfMemory.
-[[nodiscard]] Result<void> write_polylines(const std::filesystem::path& path, std::span<const Vec3> points,
-                                           std::span<const std::vector<std::uint32_t>> polylines,
-                                           const DVec3& offset = DVec3(0.0));
+[[nodiscard]] VKMESH_API Result<void> write_polylines(const std::filesystem::path& path,
+                                                      std::span<const Vec3> points,
+                                                      std::span<const std::vector<std::uint32_t>> polylines,
+                                                      const DVec3& offset = DVec3(0.0));
 
 }  // namespace vkmesh

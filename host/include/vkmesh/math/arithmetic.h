@@ -8,9 +8,18 @@
 #include <cstdint>
 #include <span>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/arithmetic_constants.h>
 #include <vkmesh/math/vec.h>
+
+// The linker keeps one copy of an inline function, and the library's must be the exact one: a program
+// compiled with -ffast-math keeps its copies to itself.
+#if defined(__FAST_MATH__)
+#define VKMESH_EXACT_INLINE static inline
+#else
+#define VKMESH_EXACT_INLINE inline
+#endif
 
 namespace vkmesh {
 
@@ -18,33 +27,33 @@ namespace vkmesh {
 inline constexpr float kMaxCoordinate = 1152921504606846976.0f;
 
 /// x, or +0 where |x| < limit.
-[[nodiscard]] inline float zero_below(float x, float limit) {
+[[nodiscard]] VKMESH_EXACT_INLINE float zero_below(float x, float limit) {
   return std::fabs(x) < limit ? 0.0f : x;
 }
 
-[[nodiscard]] inline Vec3 zero_below(Vec3 v, float limit) {
+[[nodiscard]] VKMESH_EXACT_INLINE Vec3 zero_below(Vec3 v, float limit) {
   return {zero_below(v.x, limit), zero_below(v.y, limit), zero_below(v.z, limit)};
 }
 
 namespace detail {
 
-[[nodiscard]] inline std::uint32_t bits(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE std::uint32_t bits(float x) {
   return std::bit_cast<std::uint32_t>(x);
 }
-[[nodiscard]] inline float from_bits(std::uint32_t b) {
+[[nodiscard]] VKMESH_EXACT_INLINE float from_bits(std::uint32_t b) {
   return std::bit_cast<float>(b);
 }
 
 /// x − a·b, nearly exact where a·b is close to x: the products of 12-bit halves are exact (T. J. Dekker, "A
 /// floating-point technique for extending the available precision", 1971, §5; halved by masking).
-[[nodiscard]] inline float residual(float x, float a, float b) {
+[[nodiscard]] VKMESH_EXACT_INLINE float residual(float x, float a, float b) {
   const float ah = from_bits(bits(a) & 0xfffff000u), al = a - ah;
   const float bh = from_bits(bits(b) & 0xfffff000u), bl = b - bh;
   return (((x - ah * bh) - ah * bl) - al * bh) - al * bl;
 }
 
 /// 1 / √m for m in [1, 4), within 2 ULP.
-[[nodiscard]] inline float rough_reciprocal_root(float m) {
+[[nodiscard]] VKMESH_EXACT_INLINE float rough_reciprocal_root(float m) {
   float y = from_bits(VKMESH_RECIPROCAL_ROOT_SEED - (bits(m) >> 1));
   const float half = 0.5f * m;
   for (int i = 0; i < 3; ++i) y = y * (1.5f - (half * y) * y);
@@ -52,7 +61,7 @@ namespace detail {
 }
 
 /// The part m in [1, 4) of x = m · 4^k.
-[[nodiscard]] inline float even_mantissa(std::uint32_t x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float even_mantissa(std::uint32_t x) {
   return from_bits((x & 0x007fffffu) | ((x & 0x00800000u) != 0u ? 0x3f800000u : 0x40000000u));
 }
 
@@ -63,7 +72,7 @@ namespace exact {
 
 /// 1 / x within 0.5001 ULP, by Newton's iteration from an integer seed and one step with an exact residual.
 /// 0 where x is zero, subnormal or not finite, and where 1 / x would be subnormal.
-[[nodiscard]] inline float reciprocal(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float reciprocal(float x) {
   const std::uint32_t magnitude = detail::bits(x) & 0x7fffffffu, exponent = magnitude >> 23;
   const float m = detail::from_bits((magnitude & 0x007fffffu) | 0x3f800000u);
   float y = detail::from_bits(VKMESH_RECIPROCAL_SEED - detail::bits(m));
@@ -76,7 +85,7 @@ namespace exact {
 }
 
 /// 1 / √x within 0.5001 ULP, by the same means. 0 unless x is positive, normal and finite.
-[[nodiscard]] inline float reciprocal_root(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float reciprocal_root(float x) {
   const std::uint32_t b = detail::bits(x), exponent = b >> 23;
   const float m = detail::even_mantissa(b);
   const float y = detail::rough_reciprocal_root(m);
@@ -89,7 +98,7 @@ namespace exact {
 }
 
 /// √x, correctly rounded, by the same means. 0 unless x is positive, normal and finite.
-[[nodiscard]] inline float root(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float root(float x) {
   const std::uint32_t b = detail::bits(x), exponent = b >> 23;
   const float m = detail::even_mantissa(b);
   const float y = detail::rough_reciprocal_root(m);
@@ -101,7 +110,7 @@ namespace exact {
 }
 
 /// ∛x within 0.51 ULP, by the same means. 0 unless x is positive, normal and finite.
-[[nodiscard]] inline float cube_root(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float cube_root(float x) {
   const std::uint32_t b = detail::bits(x), exponent = b >> 23;
   // x = m · 8^k with m in [1, 8).
   const float m = detail::from_bits((b & 0x007fffffu) | ((127u + (exponent + 2u) % 3u) << 23));
@@ -120,7 +129,7 @@ namespace exact {
 
 /// The angle in [0, π/2] of the vector (x, y), for x and y in {0} ∪ [2^-61, 2^60]; within 4 ULP. 0 for (0,
 /// 0).
-[[nodiscard]] inline float first_quadrant_angle(float y, float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float first_quadrant_angle(float y, float x) {
   const bool steep = y > x;
   const float t = (steep ? x : y) * reciprocal(steep ? y : x);
   const float u = zero_below(t * t, VKMESH_TINY_COORDINATE);
@@ -139,7 +148,7 @@ namespace exact {
 }
 
 /// arccos x in [0, π], within 1.5 ULP; x is held in [−1, 1] (a NaN counts as 1 with its sign).
-[[nodiscard]] inline float arccosine(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float arccosine(float x) {
   const std::uint32_t magnitude = std::min(detail::bits(x) & 0x7fffffffu, 0x3f800000u);
   const bool negative = (detail::bits(x) >> 31) != 0u;
   const float size = zero_below(detail::from_bits(magnitude), VKMESH_TINY_LENGTH);
@@ -160,7 +169,7 @@ namespace exact {
 
 /// e^x, within 1 ULP; 0 where that would be subnormal, and the largest float where it would be larger (a NaN
 /// counts as an infinity with its sign).
-[[nodiscard]] inline float exponential(float x) {
+[[nodiscard]] VKMESH_EXACT_INLINE float exponential(float x) {
   const bool negative = (detail::bits(x) >> 31) != 0u;
   const bool far = (detail::bits(x) & 0x7fffffffu) > VKMESH_EXP_RANGE;
   const float v = zero_below(far ? 0.0f : x, VKMESH_TINY_DIRECTION);
@@ -182,12 +191,12 @@ namespace exact {
 }  // namespace exact
 
 /// |v|² for components in {0} ∪ [2^-61, 2^50].
-[[nodiscard]] inline float squared_length(Vec3 v) {
+[[nodiscard]] VKMESH_EXACT_INLINE float squared_length(Vec3 v) {
   return (v.x * v.x + v.y * v.y) + v.z * v.z;
 }
 
 /// (p1 − p0) × (p2 − p0): twice the area of the triangle, along its normal.
-[[nodiscard]] inline Vec3 area_vector(Vec3 p0, Vec3 p1, Vec3 p2) {
+[[nodiscard]] VKMESH_EXACT_INLINE Vec3 area_vector(Vec3 p0, Vec3 p1, Vec3 p2) {
   const Vec3 a = zero_below(p1 - p0, VKMESH_TINY_LENGTH);
   const Vec3 b = zero_below(p2 - p0, VKMESH_TINY_LENGTH);
   return zero_below(Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x),
@@ -196,7 +205,7 @@ namespace exact {
 
 /// v / |v| for components in {0} ∪ [2^-126, 2^127], each within 4 ULP of 1; the zero vector where v is zero
 /// or not finite.
-[[nodiscard]] inline Vec3 unit_vector(Vec3 v) {
+[[nodiscard]] VKMESH_EXACT_INLINE Vec3 unit_vector(Vec3 v) {
   const auto magnitude = [](float x) { return std::bit_cast<std::uint32_t>(x) & 0x7fffffffu; };
   const std::uint32_t largest = std::max(std::max(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
   const bool defined = largest - 1u < 0x7f7fffffu;
@@ -210,7 +219,7 @@ namespace exact {
 
 /// The angle between two unit vectors, in [0, π], within 8 ULP; 0 where either is the zero vector.
 /// W. Kahan's 2 atan2(|a − b|, |a + b|): accurate for small and for nearly straight angles.
-[[nodiscard]] inline float angle_between(Vec3 a, Vec3 b) {
+[[nodiscard]] VKMESH_EXACT_INLINE float angle_between(Vec3 a, Vec3 b) {
   const float length_a = squared_length(a), length_b = squared_length(b);
   // No branch, so that a loop of these fills vector registers.
   const bool defined = (length_a != 0.0f) & (length_b != 0.0f);
@@ -222,7 +231,7 @@ namespace exact {
 /// angle_between(left, right), the normals of the faces to the left and the right of an edge that runs along
 /// `along`: negative where they meet in a valley, as seen from the side that the normals point to.
 /// Components of `along` lie in {0} ∪ [2^-149, 2^61].
-[[nodiscard]] inline float dihedral_angle(Vec3 left, Vec3 right, Vec3 along) {
+[[nodiscard]] VKMESH_EXACT_INLINE float dihedral_angle(Vec3 left, Vec3 right, Vec3 along) {
   const Vec3 c = zero_below(Vec3(left.y * right.z - left.z * right.y, left.z * right.x - left.x * right.z,
                                  left.x * right.y - left.y * right.x),
                             VKMESH_TINY_DIRECTION);
@@ -232,7 +241,7 @@ namespace exact {
 }
 
 /// |v| within 4 ULP, for components in {0} ∪ [2^-126, 2^126].
-[[nodiscard]] inline float vector_length(Vec3 v) {
+[[nodiscard]] VKMESH_EXACT_INLINE float vector_length(Vec3 v) {
   const std::uint32_t largest =
       std::max(std::max(detail::bits(v.x) & 0x7fffffffu, detail::bits(v.y) & 0x7fffffffu),
                detail::bits(v.z) & 0x7fffffffu);
@@ -242,7 +251,7 @@ namespace exact {
 }
 
 /// (p1 − p0) · (p2 − p0), as area_vector() is the other product.
-[[nodiscard]] inline float corner_product(Vec3 p0, Vec3 p1, Vec3 p2) {
+[[nodiscard]] VKMESH_EXACT_INLINE float corner_product(Vec3 p0, Vec3 p1, Vec3 p2) {
   const Vec3 a = zero_below(p1 - p0, VKMESH_TINY_LENGTH);
   const Vec3 b = zero_below(p2 - p0, VKMESH_TINY_LENGTH);
   return zero_below((a.x * b.x + a.y * b.y) + a.z * b.z, VKMESH_TINY_AREA);
@@ -250,7 +259,7 @@ namespace exact {
 
 /// x / y for y in {0} ∪ [2^-104, 2^125], held within ±bound, a power of two of which the inverse is given; 0
 /// where y is 0, and where the quotient is below 2^-100.
-[[nodiscard]] inline float bounded_quotient(float x, float y, float bound, float inverse_bound) {
+[[nodiscard]] VKMESH_EXACT_INLINE float bounded_quotient(float x, float y, float bound, float inverse_bound) {
   // Compared before the division, which could overflow.
   const float scaled = x * inverse_bound;
   const bool high = scaled >= y, low = -scaled >= y;
@@ -260,7 +269,7 @@ namespace exact {
 
 /// The cotangent of a corner's angle, from its corner_product() and the length of its area_vector(), held
 /// within ±2^10; 0 for a triangle without area, and below 2^-40.
-[[nodiscard]] inline float cotangent(float product, float twice_area) {
+[[nodiscard]] VKMESH_EXACT_INLINE float cotangent(float product, float twice_area) {
   return zero_below(
       bounded_quotient(product, twice_area, VKMESH_COTANGENT_BOUND, VKMESH_COTANGENT_BOUND_INVERSE),
       VKMESH_TINY_DIRECTION);
@@ -268,7 +277,7 @@ namespace exact {
 
 /// The angle in [0, π] of the vector (product, twice_area), which is that of a corner of a triangle; 0 for
 /// (0, 0), and exactly 0 or π for a triangle without area. Within 4 ULP of its arguments' angle.
-[[nodiscard]] inline float corner_angle(float product, float twice_area) {
+[[nodiscard]] VKMESH_EXACT_INLINE float corner_angle(float product, float twice_area) {
   const std::uint32_t largest =
       std::max(detail::bits(product) & 0x7fffffffu, detail::bits(twice_area) & 0x7fffffffu);
   const float scale = detail::from_bits(0x7f000000u - (largest & 0x7f800000u));
@@ -281,11 +290,14 @@ namespace exact {
 /// What every pass asks of positions. O(n).
 /// Errors: kUnsuitable for a coordinate that is not below kMaxCoordinate in magnitude (or not finite), by
 /// vertex.
-[[nodiscard]] Result<void> check_positions(std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API Result<void> check_positions(std::span<const Vec3> positions);
 
 /// check_positions(), and a copy in which coordinates below 2^-100 in magnitude are +0, as smoothing works
 /// on. (Normals and angles need no such copy: beside the thresholds for lengths, coordinates as small as
 /// these change nothing.) Errors: kUsage when the sizes differ; as check_positions().
-[[nodiscard]] Result<void> prepare_positions(std::span<const Vec3> positions, std::span<Vec3> prepared);
+[[nodiscard]] VKMESH_API Result<void> prepare_positions(std::span<const Vec3> positions,
+                                                        std::span<Vec3> prepared);
 
 }  // namespace vkmesh
+
+#undef VKMESH_EXACT_INLINE

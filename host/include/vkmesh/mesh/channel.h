@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include <vkmesh/base/api.h>
+
 namespace vkmesh {
 
 /// The values of a channel, in the scalar type the file gave them.
@@ -20,7 +22,7 @@ using ChannelValues =
 /// Names with a meaning everywhere: "normal" (3 components), "uv" (2; v points up, as in OBJ), "color" (3 or
 /// 4; 0..255 for uint8, 0..1 for float), "quality" (1), "material" and "group" (1, whole numbers that number
 /// `labels`). Any other name is carried as it is.
-struct Channel {
+struct VKMESH_API Channel {
   std::string name;
   unsigned components = 1;
   ChannelValues values;
@@ -34,16 +36,17 @@ struct Channel {
 };
 
 /// The channel of that name, or nullptr. O(channels).
-[[nodiscard]] const Channel* find_channel(const std::vector<Channel>& channels, const std::string& name);
+[[nodiscard]] VKMESH_API const Channel* find_channel(const std::vector<Channel>& channels,
+                                                     const std::string& name);
 
 /// Replaces the channel of the same name, or appends.
-void set_channel(std::vector<Channel>& channels, Channel channel);
+VKMESH_API void set_channel(std::vector<Channel>& channels, Channel channel);
 
 /// The elements `from` of a channel, in that order: what is left of it when elements are dropped, copied or
 /// moved. O(from.size()).
-[[nodiscard]] Channel gather(const Channel& channel, std::span<const std::uint32_t> from);
+[[nodiscard]] VKMESH_API Channel gather(const Channel& channel, std::span<const std::uint32_t> from);
 /// The same for each of the channels.
-[[nodiscard]] std::vector<Channel> gather(const std::vector<Channel>& channels,
-                                          std::span<const std::uint32_t> from);
+[[nodiscard]] VKMESH_API std::vector<Channel> gather(const std::vector<Channel>& channels,
+                                                     std::span<const std::uint32_t> from);
 
 }  // namespace vkmesh

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
 
@@ -16,6 +17,6 @@ struct FaceComponents {
   std::vector<std::size_t> faces;      ///< The number of faces of each component.
 };
 /// O(half-edges). Errors: kOutOfMemory.
-[[nodiscard]] Result<FaceComponents> face_components(const HalfEdgeMesh& mesh);
+[[nodiscard]] VKMESH_API Result<FaceComponents> face_components(const HalfEdgeMesh& mesh);
 
 }  // namespace vkmesh

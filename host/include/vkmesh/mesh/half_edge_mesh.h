@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/handles.h>
 
@@ -75,7 +76,7 @@ struct YieldTwinFace;
 /// The half-edges of a face stand side by side in cyclic order, so half-edge 3f + i starts at corner i of
 /// triangle f, and `next`, `previous` and `face` are arithmetic. Memory: for triangles 8 bytes a half-edge
 /// and 4 a vertex (about 52 bytes a vertex on a closed mesh); polygons add 4 bytes a half-edge and 4 a face.
-class HalfEdgeMesh {
+class VKMESH_API HalfEdgeMesh {
  public:
   HalfEdgeMesh() = default;
 
@@ -217,7 +218,7 @@ class HalfEdgeMesh {
 /// ranges, twins that are mutual and opposite, no edge used twice in one direction, faces without repeated
 /// vertices, leading half-edges that start their fans, and one fan for each vertex. O(half-edges). Errors:
 /// kInternal with the invariant's name.
-[[nodiscard]] Result<void> validate(const HalfEdgeMesh& mesh);
+[[nodiscard]] VKMESH_API Result<void> validate(const HalfEdgeMesh& mesh);
 
 inline HalfEdgeId HalfEdgeMesh::next(HalfEdgeId h) const {
   if (is_triangles()) return HalfEdgeId(h.index % 3 == 2 ? h.index - 2 : h.index + 1);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/channel.h>
 
@@ -13,7 +14,7 @@ namespace vkmesh {
 
 /// An indexed face set (Akenine-Möller & Haines, ch. 12): may hold anything a file can hold — non-manifold
 /// edges, isolated points, degenerate faces. `consolidate` judges it. A point cloud is one without faces.
-struct IndexedFaceSet {
+struct VKMESH_API IndexedFaceSet {
   std::vector<Vec3> points;
   /// Point index of every corner, face after face. Readers guarantee that each is < points.size().
   std::vector<std::uint32_t> corners;

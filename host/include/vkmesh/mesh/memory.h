@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/mesh/node_neighbours.h>
@@ -14,11 +15,11 @@ namespace vkmesh {
 
 // Bytes of the elements, without what allocators add; docs/structures.md has them per element. O(1), but
 // O(channels) where there are some.
-[[nodiscard]] std::size_t bytes_of(const PolygonSoup& soup);
-[[nodiscard]] std::size_t bytes_of(const IndexedFaceSet& mesh);
-[[nodiscard]] std::size_t bytes_of(const HalfEdgeMesh& mesh);
-[[nodiscard]] std::size_t bytes_of(const TriangleNeighbours& triangles);
-[[nodiscard]] std::size_t bytes_of(const NodeNeighbours& neighbours);
-[[nodiscard]] std::size_t bytes_of(const VertexCorners& corners);
+[[nodiscard]] VKMESH_API std::size_t bytes_of(const PolygonSoup& soup);
+[[nodiscard]] VKMESH_API std::size_t bytes_of(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API std::size_t bytes_of(const HalfEdgeMesh& mesh);
+[[nodiscard]] VKMESH_API std::size_t bytes_of(const TriangleNeighbours& triangles);
+[[nodiscard]] VKMESH_API std::size_t bytes_of(const NodeNeighbours& neighbours);
+[[nodiscard]] VKMESH_API std::size_t bytes_of(const VertexCorners& corners);
 
 }  // namespace vkmesh

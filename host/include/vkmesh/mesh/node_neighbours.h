@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
 
@@ -33,10 +34,10 @@ struct NodeNeighbours {
 
 /// O(half-edges). Any polygon mesh; faces of more than three corners are not seen in the lists.
 /// Errors: kOutOfMemory.
-[[nodiscard]] Result<NodeNeighbours> node_neighbours(const HalfEdgeMesh& mesh);
+[[nodiscard]] VKMESH_API Result<NodeNeighbours> node_neighbours(const HalfEdgeMesh& mesh);
 
 /// The triangle mesh of which these are the neighbour lists; triangles by their smallest vertex, then in its
 /// cyclic order. O(edges). Errors: kUnsuitable when the lists are those of no triangle mesh.
-[[nodiscard]] Result<HalfEdgeMesh> to_half_edge_mesh(const NodeNeighbours& neighbours);
+[[nodiscard]] VKMESH_API Result<HalfEdgeMesh> to_half_edge_mesh(const NodeNeighbours& neighbours);
 
 }  // namespace vkmesh

@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/channel.h>
 
 namespace vkmesh {
 
 /// A polygon soup: no notion of whether two corners are one point. `weld` gives it one.
-struct PolygonSoup {
+struct VKMESH_API PolygonSoup {
   std::vector<Vec3> corners;                ///< Position of every corner, face after face.
   std::vector<std::uint32_t> face_offsets;  ///< As in IndexedFaceSet: empty means triangles.
   std::vector<Channel> face_channels;       ///< One element per face (STL: "normal", "attribute").

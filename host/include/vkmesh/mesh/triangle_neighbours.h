@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
 #include <vkmesh/mesh/handles.h>
@@ -15,7 +16,7 @@ namespace vkmesh {
 /// A triangle [v_i, v_j, v_k] has neighbours t_i, t_j, t_k: t_i is joined to it along [v_j, v_k], the edge
 /// opposite v_i. Each vertex has a leading triangle; on the boundary it starts the vertex's fan. Memory: 24
 /// bytes a triangle, 4 a vertex (52 bytes a vertex on a closed mesh, as half-edges).
-struct TriangleNeighbours {
+struct VKMESH_API TriangleNeighbours {
   std::vector<std::uint32_t> corners;     ///< Vertices, three a triangle, counter-clockwise.
   std::vector<std::uint32_t> neighbours;  ///< Triangles, three a triangle; kInvalid across the boundary.
   std::vector<std::uint32_t> leading;     ///< A triangle for each vertex; kInvalid when it is isolated.
@@ -84,10 +85,10 @@ struct TriangleNeighbours {
 };
 
 /// O(half-edges). Triangle t has the corners of face t. Errors: kUnsuitable for polygons; kOutOfMemory.
-[[nodiscard]] Result<TriangleNeighbours> triangle_neighbours(const HalfEdgeMesh& mesh);
+[[nodiscard]] VKMESH_API Result<TriangleNeighbours> triangle_neighbours(const HalfEdgeMesh& mesh);
 
 /// The inverse. Half-edge 3t + i starts at corner i of triangle t. O(triangles). Errors: kUnsuitable when
 /// the arrays are those of no oriented manifold; kOutOfMemory.
-[[nodiscard]] Result<HalfEdgeMesh> to_half_edge_mesh(const TriangleNeighbours& triangles);
+[[nodiscard]] VKMESH_API Result<HalfEdgeMesh> to_half_edge_mesh(const TriangleNeighbours& triangles);
 
 }  // namespace vkmesh

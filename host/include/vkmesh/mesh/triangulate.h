@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 
@@ -22,6 +23,6 @@ struct Triangulated {
 /// crosses itself) the rest is cut as a fan. Corner and face channels follow. Faces of fewer than three
 /// corners pass no triangle on: run consolidate first. About O(n log n) for a simple polygon of n corners (a
 /// kd-tree finds the corners within an ear), more for one that crosses itself. Errors: kOutOfMemory.
-[[nodiscard]] Result<Triangulated> triangulate(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<Triangulated> triangulate(const IndexedFaceSet& mesh);
 
 }  // namespace vkmesh

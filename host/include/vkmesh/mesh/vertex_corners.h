@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
 
@@ -25,6 +26,6 @@ struct VertexCorners {
 };
 
 /// O(half-edges). Errors: kOutOfMemory.
-[[nodiscard]] Result<VertexCorners> vertex_corners(const HalfEdgeMesh& mesh);
+[[nodiscard]] VKMESH_API Result<VertexCorners> vertex_corners(const HalfEdgeMesh& mesh);
 
 }  // namespace vkmesh

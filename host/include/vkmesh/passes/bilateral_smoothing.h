@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
@@ -34,12 +35,11 @@ struct BilateralSmoothingOptions {
 /// do not count; isolated vertices, and those that no face is near to, stay. O(vertices × faces within 2
 /// σ_f). Errors: kUsage unless 2^-40 ≤ σ_f, σ_g ≤ 2^40; kUnsuitable unless triangles, and for a mesh more
 /// than 2^20 σ_f wide; kUsage unless one position for each vertex; kOutOfMemory; kInterrupted.
-[[nodiscard]] Result<std::vector<Vec3>> bilateral_smoothing(const HalfEdgeMesh& mesh,
-                                                            std::span<const Vec3> positions,
-                                                            const BilateralSmoothingOptions& options,
-                                                            const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<std::vector<Vec3>> bilateral_smoothing(
+    const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const BilateralSmoothingOptions& options,
+    const Progress& progress = {});
 
 /// What σ_f is given in multiples of; 0 for a mesh without edges. In double precision; O(half-edges).
-[[nodiscard]] double mean_edge_length(const HalfEdgeMesh& mesh, std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API double mean_edge_length(const HalfEdgeMesh& mesh, std::span<const Vec3> positions);
 
 }  // namespace vkmesh

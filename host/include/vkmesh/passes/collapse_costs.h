@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -31,7 +32,7 @@ struct CollapseCostOptions {
 };
 
 /// Centre and scale for the given positions. O(n).
-[[nodiscard]] CollapseCostOptions unit_frame(std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API CollapseCostOptions unit_frame(std::span<const Vec3> positions);
 
 /// Σ w n nᵀ over the planes through the vertex, as xx, xy, xz, yy, yz, zz: with the vertex as origin nothing
 /// else of a quadric is left. In scaled units of length².
@@ -41,17 +42,16 @@ using VertexQuadric = std::array<float, 6>;
 /// triangle, weighted by its area, summed in ascending order of faces. Entries below 2^-60 are 0. The
 /// reference of shaders/passes/vertex_quadrics.comp, equal to it bit for bit. O(faces). Errors: as
 /// vertex_normals(), and kUsage for options out of range.
-[[nodiscard]] Result<std::vector<VertexQuadric>> vertex_quadrics(const HalfEdgeMesh& mesh,
-                                                                 std::span<const Vec3> positions,
-                                                                 const CollapseCostOptions& options = {});
+[[nodiscard]] VKMESH_API Result<std::vector<VertexQuadric>> vertex_quadrics(
+    const HalfEdgeMesh& mesh, std::span<const Vec3> positions, const CollapseCostOptions& options = {});
 
 /// For each half-edge the quadric error of collapsing its edge, the same for twins: area times squared
 /// distance in scaled units, at least 0; the largest float where that has no value. The reference of
 /// shaders/passes/collapse_costs.comp, equal to it bit for bit. O(half-edges). Errors: as vertex_quadrics(),
 /// and kUsage unless one quadric for each vertex.
-[[nodiscard]] Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh,
-                                                        std::span<const Vec3> positions,
-                                                        std::span<const VertexQuadric> quadrics,
-                                                        const CollapseCostOptions& options = {});
+[[nodiscard]] VKMESH_API Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh,
+                                                                   std::span<const Vec3> positions,
+                                                                   std::span<const VertexQuadric> quadrics,
+                                                                   const CollapseCostOptions& options = {});
 
 }  // namespace vkmesh

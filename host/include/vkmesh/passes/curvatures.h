@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/node_neighbours.h>
@@ -31,7 +32,7 @@ struct VertexCurvature {
 /// slivers make large values and never a NaN. Takes the neighbours of a triangle mesh. The reference of
 /// shaders/passes/curvatures.comp, equal to it bit for bit. O(edges). Errors: kUsage for a wrong number of
 /// positions; kUnsuitable as check_positions(); kOutOfMemory.
-[[nodiscard]] Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours,
-                                                              std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API Result<std::vector<VertexCurvature>> curvatures(const NodeNeighbours& neighbours,
+                                                                         std::span<const Vec3> positions);
 
 }  // namespace vkmesh

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -24,7 +25,7 @@ struct DihedralAngles {
 /// accurate for flat and sharp edges alike; the sign is that of (a × b) · edge. The reference of
 /// shaders/passes/dihedral_angles_*.comp, equal to it bit for bit. O(half-edges). Errors: as
 /// vertex_normals().
-[[nodiscard]] Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh,
-                                                     std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh,
+                                                                std::span<const Vec3> positions);
 
 }  // namespace vkmesh

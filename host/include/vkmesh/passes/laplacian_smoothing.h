@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
@@ -58,9 +59,8 @@ struct LaplacianSmoothingOptions {
 /// Coordinates below 2^-100 in magnitude become 0. Cotangent weights take the neighbours of a triangle mesh.
 /// O(iterations × edges). Memory: about 40 bytes a vertex beside the result. Errors: kUsage for λ outside [0,
 /// 1], μ outside [−1, 0], a wrong number of positions or of locked vertices; kOutOfMemory; kInterrupted.
-[[nodiscard]] Result<std::vector<Vec3>> laplacian_smoothing(const NodeNeighbours& neighbours,
-                                                            std::span<const Vec3> positions,
-                                                            const LaplacianSmoothingOptions& options = {},
-                                                            const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<std::vector<Vec3>> laplacian_smoothing(
+    const NodeNeighbours& neighbours, std::span<const Vec3> positions,
+    const LaplacianSmoothingOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vkmesh

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -16,7 +17,8 @@ namespace vkmesh {
 /// volumes is 0, where they differ in sign, or by more than a factor 2^30. The reference of
 /// shaders/passes/restore_volume.comp, equal to it bit for bit. O(faces). Errors: kUnsuitable unless closed
 /// triangles, and as check_positions(); kUsage unless one position for each vertex; kOutOfMemory.
-[[nodiscard]] Result<std::vector<Vec3>> restore_volume(const HalfEdgeMesh& mesh, std::span<const Vec3> before,
-                                                       std::span<const Vec3> after);
+[[nodiscard]] VKMESH_API Result<std::vector<Vec3>> restore_volume(const HalfEdgeMesh& mesh,
+                                                                  std::span<const Vec3> before,
+                                                                  std::span<const Vec3> after);
 
 }  // namespace vkmesh

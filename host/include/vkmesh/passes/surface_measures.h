@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -23,14 +24,14 @@ struct SurfaceMeasures {
 /// on, in coordinates relative to the centre of the bounds and scaled by a power of two. The reference of
 /// shaders/passes/bounds_blocks.comp, face_measures.comp and sum_blocks.comp, equal to them bit for bit.
 /// O(faces). Errors: kUnsuitable unless triangles; kUsage unless one position for each vertex; kOutOfMemory.
-[[nodiscard]] Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
-                                                       std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API Result<SurfaceMeasures> surface_measures(const HalfEdgeMesh& mesh,
+                                                                  std::span<const Vec3> positions);
 
 /// What the sums of the pass are, for both paths: low, high, and in the scaled coordinates twice the area,
 /// its moment (three), and six volumes.
 using RawMeasures = std::array<float, 11>;
 
 /// In double precision. O(1).
-[[nodiscard]] SurfaceMeasures to_surface_measures(const RawMeasures& raw);
+[[nodiscard]] VKMESH_API SurfaceMeasures to_surface_measures(const RawMeasures& raw);
 
 }  // namespace vkmesh

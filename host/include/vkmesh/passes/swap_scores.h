@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -29,8 +30,8 @@ inline constexpr float kNoSwap = -4.0f;
 /// plane: where the quadrilateral is not convex). Whether the new edge exists already is not looked at. The
 /// reference of shaders/passes/swap_scores.comp, equal to it bit for bit. O(half-edges). Errors: as
 /// vertex_normals().
-[[nodiscard]] Result<std::vector<float>> swap_scores(const HalfEdgeMesh& mesh,
-                                                     std::span<const Vec3> positions,
-                                                     SwapCriterion criterion = SwapCriterion::kMinAngle);
+[[nodiscard]] VKMESH_API Result<std::vector<float>> swap_scores(
+    const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+    SwapCriterion criterion = SwapCriterion::kMinAngle);
 
 }  // namespace vkmesh

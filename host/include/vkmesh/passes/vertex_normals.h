@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -32,13 +33,14 @@ struct VertexNormalsOptions {
 /// reference of shaders/passes/vertex_normals*.comp, equal to them bit for bit; polygons have no kernel, and
 /// the same bytes on every machine. O(half-edges). Errors: kUsage unless one position for each vertex;
 /// kOutOfMemory.
-[[nodiscard]] Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
-                                                       std::span<const Vec3> positions,
-                                                       const VertexNormalsOptions& options = {});
+[[nodiscard]] VKMESH_API Result<std::vector<Vec3>> vertex_normals(const HalfEdgeMesh& mesh,
+                                                                  std::span<const Vec3> positions,
+                                                                  const VertexNormalsOptions& options = {});
 
 /// The same into memory of the caller, one vector for each vertex, whatever it held. Errors: also kUsage
 /// where the size of `normals` differs; it is left as it was.
-[[nodiscard]] Result<void> vertex_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                          std::span<Vec3> normals, const VertexNormalsOptions& options = {});
+[[nodiscard]] VKMESH_API Result<void> vertex_normals(const HalfEdgeMesh& mesh,
+                                                     std::span<const Vec3> positions, std::span<Vec3> normals,
+                                                     const VertexNormalsOptions& options = {});
 
 }  // namespace vkmesh

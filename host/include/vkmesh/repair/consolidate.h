@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -29,7 +30,7 @@ struct ConsolidateOptions {
 };
 
 /// What was found, and what was done about it. Nothing is changed that is not counted here.
-struct ConsolidateReport {
+struct VKMESH_API ConsolidateReport {
   // The input, after welding where that was asked for.
   std::size_t points = 0;
   std::size_t faces = 0;
@@ -100,19 +101,20 @@ struct Consolidated {
 /// O(n): edges are distributed to their smaller points by counting, and sorted within one point. Repairs
 /// take O(n log n). Errors: kUnsuitable with every defect counted when `strict` (or for a non-orientable
 /// mesh that is not to be cut); kUsage for corners that name no point; kOutOfMemory; kInterrupted.
-[[nodiscard]] Result<Consolidated> consolidate(IndexedFaceSet mesh, const ConsolidateOptions& options = {},
-                                               const Progress& progress = {});
+[[nodiscard]] VKMESH_API Result<Consolidated> consolidate(IndexedFaceSet mesh,
+                                                          const ConsolidateOptions& options = {},
+                                                          const Progress& progress = {});
 
 /// What consolidate() would find, without changing or building anything. O(n). Errors: kUsage, kOutOfMemory.
-[[nodiscard]] Result<ConsolidateReport> diagnose(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<ConsolidateReport> diagnose(const IndexedFaceSet& mesh);
 
 /// The half-edges of a mesh that is an oriented manifold: vertex i is point i, half-edge i is corner i, face
 /// i is face i. O(n). Errors: kUnsuitable with every defect counted in one sentence; kUsage, kOutOfMemory.
-[[nodiscard]] Result<HalfEdgeMesh> to_half_edge_mesh(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<HalfEdgeMesh> to_half_edge_mesh(const IndexedFaceSet& mesh);
 
 /// The faces of a half-edge mesh over the given positions, without attributes: the inverse of
 /// to_half_edge_mesh(). O(n). Errors: kUsage unless there is one position for each vertex; kOutOfMemory.
-[[nodiscard]] Result<IndexedFaceSet> to_indexed_face_set(const HalfEdgeMesh& mesh,
-                                                         std::vector<Vec3> positions);
+[[nodiscard]] VKMESH_API Result<IndexedFaceSet> to_indexed_face_set(const HalfEdgeMesh& mesh,
+                                                                    std::vector<Vec3> positions);
 
 }  // namespace vkmesh

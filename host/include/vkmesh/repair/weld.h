@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/length.h>
 #include <vkmesh/mesh/indexed_face_set.h>
@@ -41,16 +42,16 @@ struct Welded {
 /// each offset. O(n log n) for points that do not crowd the cells; with k points in neighbouring cells O(n k)
 /// at worst. Errors: kUsage for a tolerance that is negative or not finite, for corners that name no point;
 /// kOutOfMemory.
-[[nodiscard]] Result<Welded> weld(const IndexedFaceSet& mesh, const WeldOptions& options = {});
+[[nodiscard]] VKMESH_API Result<Welded> weld(const IndexedFaceSet& mesh, const WeldOptions& options = {});
 
 /// The same for the corners of a soup, exactly: equal coordinates are one point. Points in order of first
 /// appearance; faces and their channels keep their order. O(n) expected for n corners (a hash table).
 /// Errors: kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
-[[nodiscard]] Result<IndexedFaceSet> weld(const PolygonSoup& soup);
+[[nodiscard]] VKMESH_API Result<IndexedFaceSet> weld(const PolygonSoup& soup);
 
 /// The faces with corners of their own: the way back, after which weld() gives the same faces over the points
 /// that they use. Channels of faces follow; a soup has no place for those of points and corners. O(n) for n
 /// corners. Errors: kUsage for corners that name no point; kOutOfMemory.
-[[nodiscard]] Result<PolygonSoup> to_polygon_soup(const IndexedFaceSet& mesh);
+[[nodiscard]] VKMESH_API Result<PolygonSoup> to_polygon_soup(const IndexedFaceSet& mesh);
 
 }  // namespace vkmesh

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 
@@ -28,7 +29,7 @@ struct CameraAxes {
 };
 
 /// Errors: kUsage where eye, target and up span no such axes.
-[[nodiscard]] Result<CameraAxes> axes_of(const Camera& camera);
+[[nodiscard]] VKMESH_API Result<CameraAxes> axes_of(const Camera& camera);
 
 enum class UpAxis { kY, kZ };
 
@@ -44,10 +45,10 @@ struct FramingOptions {
 
 /// The camera in the given direction that just sees all points in a picture of the given width to height.
 /// Without points it looks at the unit sphere. O(points). Errors: kUsage for options outside their ranges.
-[[nodiscard]] Result<Camera> frame_camera(std::span<const Vec3> points, double width_to_height,
-                                          const FramingOptions& options = {});
+[[nodiscard]] VKMESH_API Result<Camera> frame_camera(std::span<const Vec3> points, double width_to_height,
+                                                     const FramingOptions& options = {});
 
 /// Sets near and far of a camera so that all points before it are seen. O(points).
-[[nodiscard]] Result<void> fit_depth(Camera& camera, std::span<const Vec3> points);
+[[nodiscard]] VKMESH_API Result<void> fit_depth(Camera& camera, std::span<const Vec3> points);
 
 }  // namespace vkmesh

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 
 namespace vkmesh {
@@ -19,10 +20,10 @@ struct Color {
 };
 
 /// "#rrggbb", "#rgb", "white" or "black". Errors: kUsage.
-[[nodiscard]] Result<Color> parse_color(std::string_view text);
+[[nodiscard]] VKMESH_API Result<Color> parse_color(std::string_view text);
 
 /// Rows from top to bottom, pixels from left to right.
-class Picture {
+class VKMESH_API Picture {
  public:
   Picture() = default;
   /// Errors: kUsage for more than kMaxPictureSide a side; kOutOfMemory.
@@ -47,9 +48,9 @@ class Picture {
 inline constexpr std::uint32_t kMaxPictureSide = 1000000;
 
 // What lies outside of the picture is cut off. O(pixels touched).
-void fill_rectangle(Picture& picture, std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height,
-                    Color color);
+VKMESH_API void fill_rectangle(Picture& picture, std::int64_t x, std::int64_t y, std::int64_t width,
+                               std::int64_t height, Color color);
 /// Copies `from` with its top left corner to (x, y).
-void paste(Picture& picture, const Picture& from, std::int64_t x, std::int64_t y);
+VKMESH_API void paste(Picture& picture, const Picture& from, std::int64_t x, std::int64_t y);
 
 }  // namespace vkmesh

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/view/color_map.h>
 #include <vkmesh/view/picture.h>
@@ -28,14 +29,14 @@ struct Legend {
 };
 
 /// Pixels for each of the face's that suit a picture of this width: 1, 2 or 3.
-[[nodiscard]] std::uint32_t text_scale(std::uint32_t width);
+[[nodiscard]] VKMESH_API std::uint32_t text_scale(std::uint32_t width);
 
 /// Pixels that a legend takes; 0 when it is empty.
-[[nodiscard]] std::uint32_t legend_height(const Legend& legend, std::uint32_t scale);
+[[nodiscard]] VKMESH_API std::uint32_t legend_height(const Legend& legend, std::uint32_t scale);
 
 /// A strip of that height: title, colours with ticks, swatches. Errors: as Picture::create().
-[[nodiscard]] Result<Picture> legend_strip(const Legend& legend, std::uint32_t width, Color background,
-                                           std::uint32_t scale);
+[[nodiscard]] VKMESH_API Result<Picture> legend_strip(const Legend& legend, std::uint32_t width,
+                                                      Color background, std::uint32_t scale);
 
 struct SheetCell {
   Picture picture;
@@ -45,7 +46,7 @@ struct SheetCell {
 /// Pictures in rows of `columns` (0: as square a sheet as fits the pictures' shape, wider rather than
 /// higher), each with its caption beneath. All cells get the size of the largest. Errors: kUsage for no
 /// cells; as Picture::create().
-[[nodiscard]] Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t columns,
-                                            Color background);
+[[nodiscard]] VKMESH_API Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t columns,
+                                                       Color background);
 
 }  // namespace vkmesh

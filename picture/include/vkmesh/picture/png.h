@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/view/picture.h>
 
@@ -13,11 +14,11 @@ namespace vkmesh {
 
 /// An RGB PNG of the picture; what is transparent keeps its colour. The same bytes for the same picture.
 /// Errors: kUsage for a picture without pixels; kOutOfMemory.
-[[nodiscard]] Result<std::vector<std::byte>> encode_png(const Picture& picture);
+[[nodiscard]] VKMESH_API Result<std::vector<std::byte>> encode_png(const Picture& picture);
 /// Any PNG as 8-bit sRGB. Errors: kUnreadable, kOutOfMemory.
-[[nodiscard]] Result<Picture> decode_png(std::span<const std::byte> bytes);
+[[nodiscard]] VKMESH_API Result<Picture> decode_png(std::span<const std::byte> bytes);
 
 /// The file appears whole or not at all; "-" is standard output. Errors: as encode_png(); kNotWritable.
-[[nodiscard]] Result<void> write_png(const std::filesystem::path& path, const Picture& picture);
+[[nodiscard]] VKMESH_API Result<void> write_png(const std::filesystem::path& path, const Picture& picture);
 
 }  // namespace vkmesh

@@ -8,6 +8,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/context.h>
 
@@ -20,7 +21,7 @@ enum class BufferMemory {
 };
 
 /// Range of device memory with an address that kernels take. Movable, not copyable. Empty when default-made.
-class Buffer {
+class VKMESH_API Buffer {
  public:
   /// Allocates `bytes` bytes, which may be 0; their content is undefined. `name` is shown by debuggers and
   /// validation.

@@ -10,6 +10,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 
 namespace vkmesh {
@@ -21,7 +22,7 @@ class Device;
 enum class DeviceType { kDiscreteGpu, kIntegratedGpu, kVirtualGpu, kSoftware, kOther };
 
 /// Name of a type: "discrete", "integrated", "virtual", "software", "other".
-[[nodiscard]] std::string name_of(DeviceType type);
+[[nodiscard]] VKMESH_API std::string name_of(DeviceType type);
 
 /// A device that Vulkan offers.
 struct DeviceInfo {
@@ -80,24 +81,25 @@ struct AdoptedDevice {
 };
 
 /// Returns VK_API_VERSION_1_2.
-[[nodiscard]] std::uint32_t required_api_version();
+[[nodiscard]] VKMESH_API std::uint32_t required_api_version();
 /// Features of Vulkan 1.2 that must be enabled: bufferDeviceAddress. `pNext` is null.
-[[nodiscard]] VkPhysicalDeviceVulkan12Features required_features();
+[[nodiscard]] VKMESH_API VkPhysicalDeviceVulkan12Features required_features();
 /// Names of required device extensions: none today.
-[[nodiscard]] std::span<const char* const> required_extensions();
+[[nodiscard]] VKMESH_API std::span<const char* const> required_extensions();
 
 /// Lists every device of the machine, usable or not, in the loader's order.
 /// Errors: kNoDevice when there is no Vulkan loader, or no instance can be made.
-[[nodiscard]] Result<std::vector<DeviceInfo>> list_devices(const ContextOptions& options = {});
+[[nodiscard]] VKMESH_API Result<std::vector<DeviceInfo>> list_devices(const ContextOptions& options = {});
 
 /// A device and its queue, the kernels made for it, and a tally of its memory. Several contexts may live at
 /// once. Its functions may be called from several threads. What is made with it (buffers, recorders, meshes)
 /// may outlive it, works on, and keeps the device open.
-class Context {
+class VKMESH_API Context {
  public:
   /// Opens a device, and checks its arithmetic on a few hundred values.
   /// Errors: kNoDevice (no loader, no device that fits the request, each named with the reason why not, the
-  /// layer of `validation` missing, arithmetic that differs from the host's), kOutOfMemory.
+  /// layer of `validation` missing, arithmetic that differs from the host's), kOutOfMemory; kInternal where
+  /// vkmesh was compiled with options that change its own arithmetic.
   [[nodiscard]] static Result<std::unique_ptr<Context>> create(const ContextOptions& options = {});
 
   /// Works on the caller's device. Options on validation and on the choice of a device are ignored. Errors:

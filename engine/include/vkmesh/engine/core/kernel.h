@@ -7,6 +7,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/context.h>
 
@@ -21,7 +22,7 @@ struct KernelSource {
 };
 
 /// Compute pipeline, made once for a context, which keeps it.
-class Kernel {
+class VKMESH_API Kernel {
  public:
   /// Returns the kernel of that name, made by the first call. May be called from several threads.
   /// Where the device offers it, the SPIR-V is made to ask for rounding to nearest even and for signed zeros,

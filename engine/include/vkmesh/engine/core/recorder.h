@@ -12,6 +12,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/buffer.h>
 #include <vkmesh/engine/core/context.h>
@@ -36,7 +37,7 @@ struct RecorderCounts {
 /// and writes; where one touches what an earlier one wrote, or writes what an earlier one read, a memory
 /// barrier goes between them, and nowhere else. Buffers must live until the work has run, and be of the
 /// recorder's context: else the error is kUsage. One thread at a time.
-class Recorder {
+class VKMESH_API Recorder {
  public:
   /// Records into a command buffer of its own, to be run by submit_and_wait(). Errors: kOutOfMemory,
   /// kNoDevice.

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/buffer.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -82,7 +83,7 @@ struct DrawGeometry {
 
 /// Triangles of a mesh that is on the device already. Normals and values of passes are added by the
 /// caller: `geometry.normals = &result.normals.buffer()`. Errors: kOutOfMemory, kNoDevice.
-[[nodiscard]] Result<DrawGeometry> geometry_of(DeviceMesh& mesh);
+[[nodiscard]] VKMESH_API Result<DrawGeometry> geometry_of(DeviceMesh& mesh);
 
 /// Records a picture of the geometry: clears the target to the background, draws, and copies the picture to
 /// where RenderTarget::download() finds it. All of it must live until the work has run. Face sets are drawn
@@ -90,8 +91,9 @@ struct DrawGeometry {
 /// soups are, triangle by triangle. Errors: kUsage for a camera without direction or depth range, values that
 /// are not there, or splats without spacing; kUnsuitable for more elements than a draw call counts; kNoDevice
 /// where the queue does not draw; kOutOfMemory.
-[[nodiscard]] Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry, const Camera& camera,
-                                       const DrawStyle& style, RenderTarget& target);
+[[nodiscard]] VKMESH_API Result<void> record_draw(Recorder& recorder, const DrawGeometry& geometry,
+                                                  const Camera& camera, const DrawStyle& style,
+                                                  RenderTarget& target);
 
 /// Data that a DrawMesh holds beside the triangles. Spans may be empty.
 struct DrawMeshData {
@@ -110,7 +112,7 @@ struct DrawMeshData {
 };
 
 /// Mesh of any kind, uploaded for drawing: it need not be manifold, nor have faces. Movable, not copyable.
-class DrawMesh {
+class VKMESH_API DrawMesh {
  public:
   /// Uploads triangles. Errors: kUnsuitable for a position that is not finite (the first is named) or
   /// polygons that are no triangles; kUsage for corners that name no point, or data of another size;

@@ -6,6 +6,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/buffer.h>
 #include <vkmesh/engine/core/context.h>
@@ -15,7 +16,7 @@ namespace vkmesh {
 
 /// Images of one size: colour and depth with four samples a pixel, the resolved colour, and a buffer that the
 /// host reads. About 40 bytes a pixel. Movable, not copyable. Must live until the work that draws has run.
-class RenderTarget {
+class VKMESH_API RenderTarget {
  public:
   /// Makes a target. Errors: kUsage for a side of 0 pixels or more than the device takes; kNoDevice where the
   /// device cannot draw; kOutOfMemory.

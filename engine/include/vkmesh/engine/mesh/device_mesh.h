@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/context.h>
 #include <vkmesh/engine/core/device_array.h>
@@ -16,7 +17,7 @@ namespace vkmesh {
 /// Positions and adjacency of a HalfEdgeMesh, for passes to work on. Connectivity does not change. Adjacency
 /// is uploaded when a pass asks for it first, or ahead by a call of the functions below. One thread at a
 /// time.
-class DeviceMesh {
+class VKMESH_API DeviceMesh {
  public:
   /// Uploads positions. `mesh` is borrowed: it must stay where it is while passes are recorded. O(vertices).
   /// Errors: kUnsuitable unless triangles, and for a coordinate out of range (see prepare_positions());

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -14,7 +15,7 @@ namespace vkmesh {
 
 /// The faces that lie near each vertex, found by the host for given positions and widths, in device memory;
 /// and the scratch of record_bilateral_smoothing().
-struct NearbyFaces {
+struct VKMESH_API NearbyFaces {
   /// O(n log n). Errors: as bilateral_smoothing(); kUnsuitable where more faces than DeviceInfo::loop_rounds
   /// lie near a vertex; kOutOfMemory; kNoDevice.
   [[nodiscard]] static Result<NearbyFaces> create(Context& context, const HalfEdgeMesh& mesh,
@@ -41,7 +42,7 @@ struct NearbyFaces {
 /// the mesh's positions, when the work runs, are those that `nearby` was made of; the result takes their
 /// place. O(vertices × faces within some 3 σ_f). Errors: kUsage unless `nearby` was made for this mesh;
 /// kOutOfMemory, kNoDevice.
-[[nodiscard]] Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh,
-                                                      NearbyFaces& nearby);
+[[nodiscard]] VKMESH_API Result<void> record_bilateral_smoothing(Recorder& recorder, DeviceMesh& mesh,
+                                                                 NearbyFaces& nearby);
 
 }  // namespace vkmesh

@@ -1,6 +1,7 @@
 // Quadrics and collapse costs on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -18,8 +19,8 @@ struct DeviceCollapseCosts {
 /// Records the passes of which vkmesh::vertex_quadrics() and vkmesh::collapse_costs() are the references,
 /// equal to them bit for bit. O(half-edges). Errors: kUsage for options out of range; as
 /// DeviceMesh::corner_offsets().
-[[nodiscard]] Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh,
-                                                 DeviceCollapseCosts& result,
-                                                 const CollapseCostOptions& options);
+[[nodiscard]] VKMESH_API Result<void> record_collapse_costs(Recorder& recorder, DeviceMesh& mesh,
+                                                            DeviceCollapseCosts& result,
+                                                            const CollapseCostOptions& options);
 
 }  // namespace vkmesh

@@ -1,6 +1,7 @@
 // Mean and Gaussian curvature on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -11,7 +12,7 @@ namespace vkmesh {
 
 /// Records the pass of which vkmesh::curvatures() is the reference, equal to it bit for bit: one value a
 /// vertex. O(edges). Errors: as DeviceMesh::neighbour_offsets().
-[[nodiscard]] Result<void> record_curvatures(Recorder& recorder, DeviceMesh& mesh,
-                                             DeviceArray<VertexCurvature>& curvatures);
+[[nodiscard]] VKMESH_API Result<void> record_curvatures(Recorder& recorder, DeviceMesh& mesh,
+                                                        DeviceArray<VertexCurvature>& curvatures);
 
 }  // namespace vkmesh

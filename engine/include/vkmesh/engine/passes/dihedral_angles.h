@@ -1,6 +1,7 @@
 // Dihedral angles on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -18,7 +19,7 @@ struct DeviceDihedralAngles {
 
 /// Records the pass of which vkmesh::dihedral_angles() is the reference, equal to it bit for bit.
 /// O(half-edges). Errors: as DeviceMesh::corner_offsets().
-[[nodiscard]] Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh,
-                                                  DeviceDihedralAngles& result);
+[[nodiscard]] VKMESH_API Result<void> record_dihedral_angles(Recorder& recorder, DeviceMesh& mesh,
+                                                             DeviceDihedralAngles& result);
 
 }  // namespace vkmesh

@@ -1,6 +1,7 @@
 // Laplacian smoothing on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -21,8 +22,8 @@ struct DeviceSmoothing {
 /// result takes the place of the mesh's positions. All iterations are one submission. O(iterations × edges).
 /// Errors: kUsage for λ outside [0, 1], μ outside [−1, 0], a wrong number of words in
 /// DeviceSmoothing::locked, and for locked vertices in the options; as DeviceMesh::neighbour_offsets().
-[[nodiscard]] Result<void> record_laplacian_smoothing(Recorder& recorder, DeviceMesh& mesh,
-                                                      DeviceSmoothing& smoothing,
-                                                      const LaplacianSmoothingOptions& options = {});
+[[nodiscard]] VKMESH_API Result<void> record_laplacian_smoothing(
+    Recorder& recorder, DeviceMesh& mesh, DeviceSmoothing& smoothing,
+    const LaplacianSmoothingOptions& options = {});
 
 }  // namespace vkmesh

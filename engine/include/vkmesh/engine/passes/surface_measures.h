@@ -1,6 +1,7 @@
 // Area, volume, centroid and bounds on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -10,7 +11,7 @@
 namespace vkmesh {
 
 /// Result and scratch of record_surface_measures(), kept by the caller for as long as it likes.
-struct DeviceSurfaceMeasures {
+struct VKMESH_API DeviceSurfaceMeasures {
   DeviceArray<RawMeasures> raw;                    ///< One.
   DeviceArray<float> block_sums, more_block_sums;  ///< Scratch.
 
@@ -20,7 +21,7 @@ struct DeviceSurfaceMeasures {
 
 /// Records the pass of which vkmesh::surface_measures() is the reference, equal to it bit for bit. O(faces).
 /// Errors: kOutOfMemory, kNoDevice.
-[[nodiscard]] Result<void> record_surface_measures(Recorder& recorder, DeviceMesh& mesh,
-                                                   DeviceSurfaceMeasures& result);
+[[nodiscard]] VKMESH_API Result<void> record_surface_measures(Recorder& recorder, DeviceMesh& mesh,
+                                                              DeviceSurfaceMeasures& result);
 
 }  // namespace vkmesh

@@ -1,6 +1,7 @@
 // Triangle normals on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -11,7 +12,7 @@ namespace vkmesh {
 
 /// Records the pass of which vkmesh::triangle_normals() is the reference, equal to it bit for bit: one vector
 /// a face. O(faces). Errors: kOutOfMemory, kNoDevice.
-[[nodiscard]] Result<void> record_triangle_normals(Recorder& recorder, DeviceMesh& mesh,
-                                                   DeviceArray<Vec3>& normals);
+[[nodiscard]] VKMESH_API Result<void> record_triangle_normals(Recorder& recorder, DeviceMesh& mesh,
+                                                              DeviceArray<Vec3>& normals);
 
 }  // namespace vkmesh

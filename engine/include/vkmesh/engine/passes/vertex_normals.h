@@ -1,6 +1,7 @@
 // Vertex normals on a device.
 #pragma once
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/device_array.h>
 #include <vkmesh/engine/core/recorder.h>
@@ -17,8 +18,8 @@ struct DeviceVertexNormals {
 
 /// Records the pass of which vkmesh::vertex_normals() is the reference, equal to it bit for bit.
 /// O(half-edges). Errors: as DeviceMesh::corner_offsets().
-[[nodiscard]] Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh,
-                                                 DeviceVertexNormals& result,
-                                                 const VertexNormalsOptions& options = {});
+[[nodiscard]] VKMESH_API Result<void> record_vertex_normals(Recorder& recorder, DeviceMesh& mesh,
+                                                            DeviceVertexNormals& result,
+                                                            const VertexNormalsOptions& options = {});
 
 }  // namespace vkmesh

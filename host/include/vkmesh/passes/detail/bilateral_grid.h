@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
@@ -24,10 +25,11 @@ struct BilateralGrid {
 
 /// Takes prepared positions (see prepare_positions()). The mesh must have faces. O(n log n). Errors: as
 /// bilateral_smoothing().
-[[nodiscard]] Result<BilateralGrid> bilateral_grid(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
-                                                   const BilateralSmoothingOptions& options);
+[[nodiscard]] VKMESH_API Result<BilateralGrid> bilateral_grid(const HalfEdgeMesh& mesh,
+                                                              std::span<const Vec3> positions,
+                                                              const BilateralSmoothingOptions& options);
 
 /// Errors: kUsage, as bilateral_smoothing().
-[[nodiscard]] Result<void> require_bilateral_options(const BilateralSmoothingOptions& options);
+[[nodiscard]] VKMESH_API Result<void> require_bilateral_options(const BilateralSmoothingOptions& options);
 
 }  // namespace vkmesh::detail

@@ -3,16 +3,17 @@
 
 #include <span>
 
+#include <vkmesh/base/api.h>
 #include <vkmesh/passes/collapse_costs.h>
 #include <vkmesh/passes/surface_measures.h>
 
 namespace vkmesh::detail {
 
 /// Of triangles, by their corners, and prepared positions (see prepare_positions()). O(faces).
-[[nodiscard]] RawMeasures raw_measures(std::span<const std::uint32_t> corners,
-                                       std::span<const Vec3> positions);
+[[nodiscard]] VKMESH_API RawMeasures raw_measures(std::span<const std::uint32_t> corners,
+                                                  std::span<const Vec3> positions);
 
 /// Errors: kUsage, as vertex_quadrics().
-[[nodiscard]] Result<void> require_collapse_cost_options(const CollapseCostOptions& options);
+[[nodiscard]] VKMESH_API Result<void> require_collapse_cost_options(const CollapseCostOptions& options);
 
 }  // namespace vkmesh::detail
