@@ -1,6 +1,8 @@
-# Every function that a public header declares bears VKMESH_API, so that shared libraries export it.
+# Every function that a public header declares bears VKMESH_API, so that shared libraries export it; those of vkmesh::detail stand in
+# cmake/exports.map, too.
 file(GLOB_RECURSE headers ${CMAKE_CURRENT_LIST_DIR}/../host/include/*.h ${CMAKE_CURRENT_LIST_DIR}/../engine/include/*.h
   ${CMAKE_CURRENT_LIST_DIR}/../picture/include/*.h)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../cmake/exports.map exports)
 set(marked 0)
 foreach(header IN LISTS headers)
   file(READ ${header} text)
@@ -12,6 +14,12 @@ foreach(header IN LISTS headers)
   foreach(line IN LISTS lines)
     if(line MATCHES "^(<<nodiscard>> )?VKMESH_API ")
       math(EXPR marked "${marked} + 1")
+      if(header MATCHES "/detail/" AND line MATCHES "([a-z_]+)\\(")
+        string(FIND "${exports}" "vkmesh::detail::${CMAKE_MATCH_1}*;" found)
+        if(found EQUAL -1)
+          message(SEND_ERROR "${header}: cmake/exports.map lacks ${CMAKE_MATCH_1}")
+        endif()
+      endif()
     elseif(line MATCHES "^(<<nodiscard>> |void )" AND NOT before MATCHES "^template"
         AND NOT line MATCHES "^<<nodiscard>> (inline|constexpr|VKMESH_EXACT_INLINE|auto) |^void [A-Za-z]+::")
       message(SEND_ERROR "${header}: a function without VKMESH_API: ${line}")

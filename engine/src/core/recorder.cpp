@@ -28,7 +28,7 @@ constexpr VkAccessFlags kDrawReads =
 
 }  // namespace
 
-struct Recorder::State {
+struct VKMESH_LOCAL Recorder::State {
   enum class Phase { kRecording, kRunning, kDone, kFailed };
 
   Context context;  // Of the same device as the caller's, which may go.

@@ -10,7 +10,7 @@
 
 namespace vkmesh {
 
-struct RenderTarget::State {
+struct VKMESH_LOCAL RenderTarget::State {
   explicit State(const Context& c) : context(c.shared_device()) {}
   ~State();
   State(const State&) = delete;

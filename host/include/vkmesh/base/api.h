@@ -8,3 +8,6 @@
 #else
 #define VKMESH_API
 #endif
+
+/// Takes a class back that is part of one that is exported.
+#define VKMESH_LOCAL __attribute__((visibility("hidden")))
