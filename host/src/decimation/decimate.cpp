@@ -44,7 +44,7 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
   const Frame& frame = built.frame;
   lock_vertices(mesh, corners, options);
   std::optional<Wedges> wedges = find_wedges(mesh, points.size(), options);
-  if (!stop.is_set()) sum_quadrics(mesh, constraint_weights(options.curves, wedges));
+  if (!stop.is_set() || wedges) sum_quadrics(mesh, constraint_weights(options.curves, wedges));
   VKMESH_CHECK(stop.check());
   std::optional<AttributeQuadrics> attributes;
   if (wedges)

@@ -148,3 +148,26 @@ TEST_CASE("corners that name no point and offsets that do not ascend are usage e
   set.corners.pop_back();
   CHECK(consolidate(set).error().code == ErrorCode::kUsage);
 }
+
+TEST_CASE("consolidation can be cancelled at any report, of input that needs no repair, too") {
+  for (const IndexedFaceSet& set : {test::torus(7, 5), test::quad_cube(), test::fin(), test::bow_tie()})
+    for (const bool weld : {false, true}) {
+      ConsolidateOptions options;
+      if (weld) options.weld.emplace();
+      int reports = 0;
+      double last = 0;
+      REQUIRE(consolidate(set, options, [&](double fraction) {
+        CHECK(fraction >= last);
+        last = fraction;
+        return ++reports > 0;
+      }));
+      CHECK(last == 1);
+      REQUIRE(reports > 2);
+      for (int stop = 1; stop <= reports; ++stop) {
+        int seen = 0;
+        const auto result = consolidate(set, options, [&](double) { return ++seen < stop; });
+        REQUIRE_FALSE(result);
+        CHECK(result.error().code == ErrorCode::kInterrupted);
+      }
+    }
+}
