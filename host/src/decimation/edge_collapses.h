@@ -189,6 +189,10 @@ class EdgeCollapses {
         if (why == Reason::kLocked && share_->state.boundary_kept && mesh_.on_boundary(mesh_.origin(h)) &&
             mesh_.on_boundary(mesh_.target(h)))
           why = Reason::kBoundary;
+        if constexpr (kAttributes)
+          if (const Wedges& wedges = share_->state.attributes->wedges();
+              why == Reason::kLocked && wedges.is_fixed(mesh_.origin(h)) && wedges.is_fixed(mesh_.target(h)))
+            why = Reason::kSeam;
         ++share_->state.outcome.blocked[why];
       }
     }

@@ -123,7 +123,9 @@ class VertexRemovals {
       if (v % kRemovalsBetweenReports == 0) state_.ask();
       if (!vertices_[v].alive()) continue;
       if (vertices_[v].has(VertexRecord::kLocked)) {
-        count(state_.boundary_kept && mesh_.on_boundary(v) ? Reason::kBoundary : Reason::kLocked);
+        count(state_.boundary_kept && mesh_.on_boundary(v) ? Reason::kBoundary
+              : is_fixed_by_seams(v)                       ? Reason::kSeam
+                                                           : Reason::kLocked);
       } else if (vertices_[v].has(VertexRecord::kHasParked)) {
         stars_.walk(std::span(&v, 1), [&](std::uint32_t) { count(Reason::kFoldOver); });
         evaluate([&](const VertexStar& star, std::size_t lane) {
@@ -219,7 +221,15 @@ class VertexRemovals {
         for (std::size_t b = 1; b < n; ++b)
           for (std::size_t a = 0; a < b; ++a)
             batch.barred[RetriangulationBatch::pair(a, b)][lane] = star.sides.cross(a, b) ? kNone : 0.0f;
+        state_.attributes->wedges().for_each_end(mesh_, star.edges(), [&](std::size_t i) {
+          for (std::size_t k = 2; k + 1 < n; ++k) {
+            const std::size_t other = (i + k) % n;
+            batch.barred[RetriangulationBatch::pair(std::min(i, other), std::max(i, other))][lane] = kNone;
+          }
+        });
       }
+    if (state_.boundary_kept)
+      for (std::size_t lane = 0; lane < walked.size(); ++lane) bar_ears(batch, stars_[walked[lane]], lane);
     alignas(16) std::array<float, 4> unused;
     for (std::size_t lane = 0; lane < walked.size(); lane += 4) {
       std::array<const VertexStar*, 4> stars;
@@ -466,6 +476,11 @@ class VertexRemovals {
       found = true;
     });
     return found;
+  }
+
+  [[nodiscard]] bool is_fixed_by_seams([[maybe_unused]] std::uint32_t v) const {
+    if constexpr (kAttributes) return state_.attributes->wedges().is_fixed(v);
+    return false;
   }
 
   void park(std::uint32_t v, Reason why) {

@@ -502,7 +502,7 @@ TEST_CASE("A chart of one face at the boundary is not cut off", "[decimate]") {
   options.corner_groups = groups;
   const Decimated split = run(mesh, options);
   CHECK(split.mesh.face_count() == 2);
-  CHECK(split.blocked[Reason::kSeam] == 2);
+  CHECK(split.blocked[Reason::kSeam] == 4);  // two of them are where the seam reaches the boundary
 }
 
 TEST_CASE("Vertices go by criteria, too, with attributes", "[decimate]") {

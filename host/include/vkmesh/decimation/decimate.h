@@ -294,8 +294,10 @@ using Decimated = BasicDecimated<Vec3>;
 /// and reports of the error are of the planes alone. A vertex that does not move keeps its values. An edge is
 /// a seam where values differ between its two sides at one of its ends, and all attributes have the same
 /// seams. Both sides of a seam share their points, so none opens; a collapse along a seam joins both sides at
-/// once; and none is legal that leaves a chart without a face. Vertices where seams end, meet or reach the
-/// boundary are locked.
+/// once; and none is legal that leaves a chart without a face. Vertices where seams meet or reach the
+/// boundary are locked. Where a seam ends, the values at its last edge differ at the other end alone, and the
+/// vertex goes as any other: a pole of a sphere, with a value for each face there, loses one with each vertex
+/// next to it.
 ///
 /// Of a vertex that is removed, attributes count where old and new edges cross when seen along the normal: by
 /// the values of both; and at the corners of the triangle below it, which take over what it stands for, each

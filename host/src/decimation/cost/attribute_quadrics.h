@@ -75,7 +75,7 @@ class AttributeQuadrics {
   /// To be told before the mesh fills the hole.
   void fill_hole(std::span<const std::uint32_t> edges, std::size_t neighbours, const SeamSides& sides,
                  std::span<const std::array<std::uint8_t, 3>> triangles, std::size_t first) {
-    wedges_.fill_hole(edges, neighbours, sides, triangles, first);
+    wedges_.fill_hole(mesh_, edges, neighbours, sides, triangles, first);
   }
 
   /// The attributes of the faces that are left; face f is face new_face[its source] of the result.

@@ -35,8 +35,10 @@ struct SeamSides {
 /// wedges at one of its ends, or both, is a seam.
 ///
 /// Where two seams pass through a vertex inside the surface and split its corners into two wedges, it may
-/// move and go, along the seam. Any other vertex of a seam (where seams end, meet or reach the boundary) is
-/// fixed.
+/// move and go, along the seam. Where a seam ends, the values at its last edge differ at the other end alone:
+/// the vertex there has one wedge, and moves and goes as any other. So the pole of a textured sphere, where
+/// all its meridians are seams which end at the next circle, loses one wedge with each vertex of that circle.
+/// Any other vertex of a seam (where seams meet or reach the boundary) is fixed.
 class Wedges {
  public:
   /// `same(c, d)`: whether two corners of the input, at one vertex, have the same attributes. Locks the
@@ -67,22 +69,48 @@ class Wedges {
     return of_[h] != of_[CollapseMesh::next(t)] || of_[CollapseMesh::next(h)] != of_[t];
   }
 
+  /// Whether the shape of the edge of h, a seam, matters: not so at a pole, of whose edges each is one.
+  [[nodiscard]] bool holds_shape(const CollapseMesh& mesh, std::uint32_t h) const {
+    return is_seam(mesh, h) && !ends_from_fixed(mesh, h) && !ends_from_fixed(mesh, mesh.twin(h));
+  }
+
   /// Whether the seams and the boundary are, after the collapse of h, the same curves as before, each chart
   /// between them is left, and all wedges find one to become part of: the link condition of the complex in
   /// which they are edges of their own.
   [[nodiscard]] bool keeps_seams(const CollapseMesh& mesh, std::uint32_t h) const {
     const std::uint32_t t = mesh.twin(h);
     const std::uint8_t p = marks_[mesh.origin(h)], q = marks_[mesh.origin(t)];
-    if (((p | q) & kSeam) == 0) return true;
+    if (((p | q) & (kSeam | kEnd)) == 0) return true;
     const bool seam = is_seam(mesh, h);
-    if (p != 0 && q != 0 && !seam && !on_boundary(mesh, h)) return false;
-    if (seam && (of_[h] == of_[CollapseMesh::next(t)] || of_[CollapseMesh::next(h)] == of_[t])) return false;
-    for (const std::uint32_t g : {h, t})
-      if (!mesh.is_ghost(g) && is_curve(mesh, CollapseMesh::next(g)) &&
-          is_curve(mesh, CollapseMesh::previous(g)))
-        return false;
-    return true;
+    if (seam && !differs_at_both_ends(mesh, h)) return false;
+    if (!seam && !on_boundary(mesh, h)) {
+      if ((p & kCurve) != 0 && (q & kCurve) != 0) return false;
+      if (((p & kSeam) != 0 && q != 0) || ((q & kSeam) != 0 && p != 0)) return false;
+    }
+    bool at_pole = false;
+    for (const std::uint32_t g : {h, t}) {
+      if (mesh.is_ghost(g)) continue;
+      const std::uint32_t next = CollapseMesh::next(g), previous = CollapseMesh::previous(g);
+      const bool pole = ends_at_both(mesh, next, previous);
+      if (!pole && is_curve(mesh, next) && is_curve(mesh, previous)) return false;
+      at_pole |= pole;
+    }
+    // Ends of seams would join these to curves around a chart.
+    const bool ends_meet =
+        ((p & kEnd) != 0 && (q & (kEnd | kBoundary)) != 0) || ((q & kEnd) != 0 && (p & kBoundary) != 0);
+    return at_pole || !ends_meet || seam || on_boundary(mesh, h);
   }
+
+  /// Whether the values on the two sides of the edge of h, a seam, differ at either end.
+  [[nodiscard]] bool differs_at_both_ends(const CollapseMesh& mesh, std::uint32_t h) const {
+    return differs_at_origin(mesh, h) && differs_at_origin(mesh, mesh.twin(h));
+  }
+  /// Whether the seam of h's edge ends at its origin, and comes from a vertex that is fixed.
+  [[nodiscard]] bool ends_from_fixed(const CollapseMesh& mesh, std::uint32_t h) const {
+    return is_seam(mesh, h) && !differs_at_origin(mesh, h) && is_fixed(mesh.target(h));
+  }
+  /// Whether seams that meet or reach the boundary hold the vertex where it is.
+  [[nodiscard]] bool is_fixed(std::uint32_t v) const { return (marks_[v] & kFixed) != 0; }
 
   /// Calls f(p's wedge, q's wedge) for those that the collapse of h = p → q makes one: two at a seam, else
   /// one.
@@ -154,7 +182,7 @@ class Wedges {
     const std::size_t last = sides.last;
     if (!sides.split) {
       const bool is_ear = edges.size() == 3 && mesh.is_ghost(edges[2]);
-      return !is_ear || !is_seam(mesh, across(0));
+      return (!is_ear || !is_seam(mesh, across(0))) && can_shift_ends(mesh, edges);
     }
     // Where a side is one face, none takes its place, and the edge across becomes the seam.
     if (last == 1 && is_curve(mesh, across(0))) return false;
@@ -165,9 +193,21 @@ class Wedges {
     return differs(0) || differs(last);
   }
 
+  /// Calls f(i) for the neighbours from which seams come that end at the vertex. When it goes, each must get
+  /// but one new face, with its value beyond edge i: its seam then ends at the neighbour before it.
+  template <class F>
+  void for_each_end(const CollapseMesh& mesh, std::span<const std::uint32_t> edges, F&& f) const {
+    const std::uint8_t marks = marks_[mesh.origin(edges[0])];
+    if ((marks & kEnd) == 0 || (marks & kSeam) != 0) return;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      if (is_seam(mesh, edges[i])) f(i);
+  }
+
   /// To be called before the mesh fills the hole with the same.
-  void fill_hole(std::span<const std::uint32_t> edges, std::size_t neighbours, const SeamSides& sides,
-                 std::span<const std::array<std::uint8_t, 3>> triangles, std::size_t first) {
+  void fill_hole(const CollapseMesh& mesh, std::span<const std::uint32_t> edges, std::size_t neighbours,
+                 const SeamSides& sides, std::span<const std::array<std::uint8_t, 3>> triangles,
+                 std::size_t first) {
+    for_each_end(mesh, edges, [&](std::size_t i) { marks_[mesh.target(before(edges, i))] |= kEnd; });
     std::array<std::array<std::uint32_t, 3>, CollapseMesh::kMaxHoleEdges> made;
     std::size_t count = 0;
     for (const auto& corners : triangles) {
@@ -182,13 +222,35 @@ class Wedges {
   }
 
  private:
-  static constexpr std::uint8_t kSeam = 1, kBoundary = 2;
+  // Values differ at the vertex; it lies on the boundary; they differ at the other end of an edge there.
+  static constexpr std::uint8_t kSeam = 1, kBoundary = 2, kEnd = 4, kFixed = 8, kCurve = kSeam | kBoundary;
 
   static bool on_boundary(const CollapseMesh& mesh, std::uint32_t h) {
     return mesh.is_ghost(h) || mesh.is_ghost(mesh.twin(h));
   }
   [[nodiscard]] bool is_curve(const CollapseMesh& mesh, std::uint32_t h) const {
     return on_boundary(mesh, h) || is_seam(mesh, h);
+  }
+  [[nodiscard]] bool can_shift_ends(const CollapseMesh& mesh, std::span<const std::uint32_t> edges) const {
+    bool can = true;
+    for_each_end(mesh, edges, [&](std::size_t i) {
+      const std::uint32_t v = mesh.target(before(edges, i));
+      can = can && ends_from_fixed(mesh, edges[i]) && (!on_seam(v) || is_fixed(v));
+    });
+    return can;
+  }
+  static std::uint32_t before(std::span<const std::uint32_t> edges, std::size_t i) {
+    return edges[i > 0 ? i - 1 : edges.size() - 1];
+  }
+  [[nodiscard]] bool differs_at_origin(const CollapseMesh& mesh, std::uint32_t h) const {
+    return of_[h] != of_[CollapseMesh::next(mesh.twin(h))];
+  }
+  /// Of the sides of a face that become one when the third collapses: whether both are seams that end at that
+  /// side and come from a vertex that is fixed, which loses nothing but a wedge.
+  [[nodiscard]] bool ends_at_both(const CollapseMesh& mesh, std::uint32_t next,
+                                  std::uint32_t previous) const {
+    return !on_boundary(mesh, next) && !on_boundary(mesh, previous) && ends_from_fixed(mesh, next) &&
+           ends_from_fixed(mesh, mesh.twin(previous));
   }
   // The half-edge that leaves the same vertex, clockwise.
   static std::uint32_t before(const CollapseMesh& mesh, std::uint32_t h) {
@@ -239,8 +301,14 @@ class Wedges {
     for_each_at(mesh, v, [&](std::uint32_t) { ++wedges; });
     if (boundary) marks_[v] |= kBoundary;
     if (seams == 0) return;
+    if (wedges == 1) {
+      marks_[v] |= kEnd;
+      return;
+    }
     marks_[v] |= kSeam;
-    if (boundary || seams != 2 || wedges != 2) mesh.vertices[v].source |= VertexRecord::kLocked;
+    if (!boundary && seams == 2 && wedges == 2) return;
+    marks_[v] |= kFixed;
+    mesh.vertices[v].source |= VertexRecord::kLocked;
   }
 
   std::vector<std::uint32_t> of_;             // by half-edge of the mesh's own faces

@@ -103,7 +103,7 @@ AreaVector area_of(const CollapseMesh& mesh, const CollapseMesh::Face& face) {
 
 /// The weight of the plane that stands on an edge between two faces; 0 where none does.
 float constraint(const CollapseMesh& mesh, std::uint32_t h, const ConstraintWeights& weights) {
-  const float seam = weights.seam > 0 && weights.wedges->is_seam(mesh, h) ? weights.seam : 0.0f;
+  const float seam = weights.seam > 0 && weights.wedges->holds_shape(mesh, h) ? weights.seam : 0.0f;
   if (!(weights.crease > 0)) return seam;
   const AreaVector one = area_of(mesh, mesh.face(h)), other = area_of(mesh, mesh.face(mesh.twin(h)));
   float along = 0;
