@@ -34,7 +34,12 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 /// and the link condition needs no rule for boundaries. It lies nowhere.
 constexpr Vertex kGhost = kInvalid;
 constexpr double kDegenerate = 1e-6;  // of its squared sides: a triangle of less area has no reliable normal
-constexpr double kAgainst = -0.5;     // cosine of the angle at which neighbours stand against each other
+constexpr double kSliver = 1e-4;      // the same: in a hole, one of less does not take the place of one
+constexpr double kThinner = 10;       // that was so many times as wide
+constexpr double kEar = 0.8660254037844386;  // cosine of the angle by which an ear may turn
+constexpr double kSteepest =
+    0.05;                          // cosine between a face in a hole and the direction along which it is seen
+constexpr double kAgainst = -0.5;  // cosine of the angle at which neighbours stand against each other
 
 bool contains(const auto& range, Vertex v) {
   return std::ranges::find(range, v) != std::ranges::end(range);
@@ -71,6 +76,15 @@ struct Quadric {
   }
 };
 
+/// Twice the area of a triangle over two of its sides squared.
+double shape_of(const DVec3& p, const DVec3& q, const DVec3& r) {
+  const DVec3 u = q - p, v = r - p;
+  return glm::length(glm::cross(u, v)) / std::max(glm::dot(u, u) + glm::dot(v, v), 1e-300);
+}
+/// A face in the place of another has become a sliver.
+bool thins(double before, double after) {
+  return after <= kSliver && kThinner * after < before;
+}
 /// 0 of a triangle without area.
 DVec3 unit_normal(const DVec3& p, const DVec3& q, const DVec3& r) {
   const DVec3 u = q - p, v = r - p, n = glm::cross(u, v);
@@ -124,6 +138,10 @@ class Hole {
       for (const std::size_t k : {i, (i + 1) % n_}) spoke_[k] += 0.25 * glm::length(twice);
     }
     up_ /= std::max(glm::length(up_), 1e-300);
+    for (std::size_t i = 0; i + (closed ? 0 : 1) < n_; ++i) {
+      const DVec3 normal = unit_normal(DVec3(0.0), r_[i], r_[(i + 1) % n_]);
+      is_steep = is_steep || (normal != DVec3(0.0) && glm::dot(up_, normal) < 2 * kSteepest);
+    }
     if (!is_graph()) return;
     for (std::size_t span = 1; span < n_; ++span)
       for (std::size_t a = 0; a + span < n_; ++a) fill(a, a + span, may_join);
@@ -137,7 +155,8 @@ class Hole {
     cost += quadric_.at(v_ + r_.front() + along_ * edge);
   }
 
-  double cost = kNone;                                // infinite when there is no triangulation
+  double cost = kNone;    // infinite when there is no triangulation
+  bool is_steep = false;  // what takes the place of some face may be too steep along the normal
   std::vector<std::array<std::size_t, 3>> triangles;  // by numbers in the ring
 
   /// What each neighbour takes over of what the vertex stands for: the corners of the triangle that holds it,
@@ -197,7 +216,6 @@ class Hole {
 
   /// The error of a triangle, which is 0 unless it holds the vertex; infinite if it may not be made.
   [[nodiscard]] double error_of(std::size_t a, std::size_t b, std::size_t c) const {
-    constexpr double kSteepest = 0.05;  // cosine between a face and the direction along which all is seen
     const bool is_last = a == 0 && c + 1 == n_;
     const DVec3 n = unit_normal(r_[b], r_[c], r_[a]);
     if (!(glm::dot(n, up_) >= kSteepest)) return kNone;
@@ -205,6 +223,13 @@ class Hole {
       return cosine(n, unit_normal(DVec3(0.0), r_[i], r_[j])) < cos_;
     };
     if ((a + 1 == b && turns(a, b)) || (b + 1 == c && turns(b, c)) || (is_last && closed_ && turns(c, a)))
+      return kNone;
+    const double shape = shape_of(r_[b], r_[c], r_[a]);
+    const auto thins_from = [&](std::size_t i, std::size_t j) {
+      return thins(shape_of(DVec3(0.0), r_[i], r_[j]), shape);
+    };
+    if (shape <= kSliver && (a + 1 != b || thins_from(a, b)) && (b + 1 != c || thins_from(b, c)) &&
+        (!is_last || !closed_ || thins_from(c, a)))
       return kNone;
     const double side = -left(a, c);
     if (left(a, b) < 0 || left(b, c) < 0 || side < 0 || (side == 0 && !is_last)) return 0;
@@ -246,6 +271,45 @@ class Hole {
   std::array<std::array<Best, kMostNeighbours>, kMostNeighbours> best_;
 };
 
+/// The best fan that fills a hole for which there is no good triangulation seen along its normal: v goes to
+/// one of its neighbours, on the boundary to one along that, which is a half-edge collapse.
+struct Fan {
+  double cost = kNone;
+  std::size_t heir = 0;
+  std::vector<std::array<std::size_t, 3>> triangles;
+
+  Fan(const Quadric& quadric, const DVec3& v, const std::vector<DVec3>& ring, bool closed,
+      double cos_deviation, const auto& may_join) {
+    const std::size_t n = ring.size();
+    DVec3 up(0.0);
+    for (std::size_t i = 0; i + (closed ? 0 : 1) < n; ++i)
+      up += glm::cross(ring[i] - v, ring[(i + 1) % n] - v);
+    for (std::size_t r = 0; r < n && n > 2; ++r) {
+      if ((!closed && r > 0 && r + 1 < n) || !(quadric.at(ring[r]) < cost)) continue;
+      std::vector<std::array<std::size_t, 3>> made;
+      bool legal = true;
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t next = (i + 1) % n, away = std::max(i, r) - std::min(i, r);
+        if (i == r) continue;
+        if (away > 1 && !(closed && away + 1 == n)) legal = legal && may_join(i, r);
+        if (next == r || (!closed && next == 0)) continue;
+        const DVec3 before = unit_normal(v, ring[i], ring[next]),
+                    after = unit_normal(ring[r], ring[i], ring[next]);
+        const bool is_thin = thins(shape_of(v, ring[i], ring[next]), shape_of(ring[r], ring[i], ring[next]));
+        if (before == DVec3(0.0))
+          legal = legal && (after == DVec3(0.0) || glm::dot(after, up) > 0);
+        else
+          legal = legal && !is_thin && after != DVec3(0.0) && cosine(before, after) >= cos_deviation;
+        made.push_back({r, i, next});
+      }
+      if (!legal) continue;
+      cost = quadric.at(ring[r]);
+      heir = r;
+      triangles = std::move(made);
+    }
+  }
+};
+
 /// A way to take the vertex `gone` away: others take the place of its faces, and its quadric.
 struct Step {
   double cost = kNone;
@@ -253,6 +317,7 @@ struct Step {
   DVec3 position{0.0};                  // of the vertex that is kept
   std::vector<Triangle> added;
   std::map<Vertex, double> shares;
+  bool is_fan = false;  // that fills a hole
 };
 
 class Decimation {
@@ -383,9 +448,16 @@ class Decimation {
     if (locked_[v] || around.size() > Hole::kMostNeighbours) return {};
     std::vector<DVec3> places;
     for (const Vertex r : around) places.push_back(at(r));
-    const auto is_free = [&](auto i, auto j) { return faces_at_edge(around[i], around[j]) == 0; };
-    const Hole hole(quadric_[v], at(v), std::move(places), closed, cos_deviation_, is_free);
-    if (!(hole.cost < kNone)) return {};
+    const auto is_free = [&](auto i, auto j) {
+      return faces_at_edge(around[i], around[j]) == 0 && !makes_ear(v, around, i, j);
+    };
+    if (closed && around.size() == 3 && makes_ear(v, around, 0, 2)) return {};
+    const Hole hole(quadric_[v], at(v), places, closed, cos_deviation_, is_free);
+    if (!(hole.cost < kNone) || hole.is_steep) {
+      const Fan fan(quadric_[v], at(v), places, closed, cos_deviation_, is_free);
+      if (fan.cost < hole.cost) return fan_of(v, around, fan);
+      if (!(hole.cost < kNone)) return {};
+    }
     Step step{hole.cost, v, kGhost, {}, {}, {}};
     for (const auto& [a, b, c] : hole.triangles) step.added.push_back({around[a], around[b], around[c]});
     for (const auto& [i, share] : hole.shares()) step.shares[around[i]] = share;
@@ -394,11 +466,39 @@ class Decimation {
     return step;
   }
 
+  [[nodiscard]] Step fan_of(Vertex v, const std::vector<Vertex>& around, const Fan& fan) const {
+    const Vertex kept = around[fan.heir];
+    Step step{fan.cost, v, kept, at(kept), {}, {{kept, 1.0}}, true};
+    for (const auto& [a, b, c] : fan.triangles) step.added.push_back({around[a], around[b], around[c]});
+    return step;
+  }
+
+  /// The edge between two neighbours of v cuts off a face with two sides on a boundary that is kept, which
+  /// turns far: the curve alone says where it looks.
+  [[nodiscard]] bool makes_ear(Vertex v, const std::vector<Vertex>& around, std::size_t i,
+                               std::size_t j) const {
+    const std::size_t n = around.size();
+    if (options_.curves.boundary != DecimateBoundary::kKept) return false;
+    for (std::size_t first = 0; first < n; ++first) {
+      const std::size_t last = (first + 2) % n;
+      if (n > 3 && std::minmax(i, j) != std::minmax(first, last)) continue;
+      const Vertex a = around[first], b = around[(first + 1) % n], c = around[last];
+      if (faces_at_edge(a, b) > 1 || faces_at_edge(b, c) > 1) continue;
+      const DVec3 ear = unit_normal(at(a), at(b), at(c));
+      if (glm::dot(ear, unit_normal(at(v), at(a), at(b))) < kEar ||
+          glm::dot(ear, unit_normal(at(v), at(b), at(c))) < kEar)
+        return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] bool is_legal(const Step& step, Vertex p, Vertex q) const {
     const double weight = quadric_[p].weight + (removes_vertices_ ? 0 : quadric_[q].weight);
     if (step.cost > max_error_ * max_error_ * weight) return false;
     const std::vector<Vertex> at_p = ring(p), at_q = ring(removes_vertices_ ? at_p.front() : q);
     if (at_p.size() == 3 && at_q.size() == 3) return false;  // a tetrahedron, which would lie on itself
+    if (step.is_fan)
+      return !detail::folds_over(faces_around(step.gone, step.kept, step.position), cos_deviation_);
     if (removes_vertices_) return !folds_over(step);
     // The link condition: the ends share but the two neighbours across the faces of the edge.
     const auto shared = std::ranges::count_if(at_p, [&](Vertex v) { return contains(at_q, v); });

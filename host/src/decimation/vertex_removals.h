@@ -15,8 +15,11 @@
 
 #include <vkmesh/mesh/handles.h>
 
+#include "decimation/collapse_neighbourhood.h"
 #include "decimation/cost/attribute_quadrics.h"
+#include "decimation/cost/fan.h"
 #include "decimation/cost/retriangulation.h"
+#include "decimation/cost/tangential_drift.h"
 #include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/legality/criteria.h"
@@ -26,6 +29,7 @@
 #include "decimation/vertex_record.h"
 #include "decimation/vertex_stars.h"
 #include "mesh/edit/link_condition.h"
+#include "mesh/edit/one_ring.h"
 #include "simd/transpose.h"
 
 namespace vkmesh::detail {
@@ -139,7 +143,7 @@ class VertexRemovals {
   }
 
  private:
-  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  static constexpr float kNone = RetriangulationBatch::kNone;
   static constexpr std::size_t kStars = Queue::kExact ? 1 : 512;
   static constexpr std::size_t kMaxNeighbours = RetriangulationBatch::kMaxNeighbours;
   static_assert(CollapseMesh::kMaxHoleEdges >= kMaxNeighbours + 1);
@@ -161,6 +165,7 @@ class VertexRemovals {
     float error, of_attributes;
     Triangles triangles;
     Receivers receivers;
+    std::int32_t heir;             // whose fan fills the hole; else -1
     bool has_existing;             // a new edge that the mesh has already
     bool is_filled_again = false;  // to avoid such edges
   };
@@ -194,7 +199,7 @@ class VertexRemovals {
           prefetch(&vertices_[star.vertex]);
           for (std::size_t k = 0; k < star.neighbours(); ++k) prefetch(&vertices_[star.ring.vertex[k]]);
         }
-        fill(batch_, attributes_, n);
+        fill(batch_, attributes_, n, count);
         for (std::size_t lane = 0; lane < count; ++lane) use(stars_[order[from + lane]], lane);
       }
   }
@@ -202,11 +207,17 @@ class VertexRemovals {
   struct None {};
   using Attributes = std::conditional_t<kAttributes, RetriangulationAttributes, None>;
 
-  void fill(RetriangulationBatch& batch, Attributes& attributes, std::size_t neighbours) const {
-    if constexpr (kAttributes)
-      retriangulate(batch, neighbours, state_.limits.cos_deviation, &attributes);
-    else
-      retriangulate(batch, neighbours, state_.limits.cos_deviation);
+  /// Fills the holes of the first `count` lanes; by a fan where there is no triangulation seen along a
+  /// normal.
+  void fill(RetriangulationBatch& batch, Attributes& attributes, std::size_t neighbours,
+            std::size_t count) const {
+    RetriangulationAttributes* of_attributes = nullptr;
+    if constexpr (kAttributes) of_attributes = &attributes;
+    const float cos_deviation = state_.limits.cos_deviation;
+    retriangulate(batch, neighbours, cos_deviation, of_attributes);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      if (!(batch.error[lane] < kNone) || (batch.steep[lane] > 0 && batch.error[lane] > 0))
+        fill_with_fan(batch, neighbours, lane, cos_deviation, of_attributes);
   }
 
   /// Puts walked stars, all of as many neighbours, into the lanes from 0 on. Four records are turned at a
@@ -251,6 +262,23 @@ class VertexRemovals {
         transpose_4x4(records, {&x[lane], &y[lane], &z[lane], unused.data()});
       }
     }
+  }
+
+  /// Bars the new edges that would leave a face with two sides on a boundary that is kept, for good, unless
+  /// it looks about where the faces looked that were there: the curve alone says where it does.
+  void bar_ears(RetriangulationBatch& batch, const VertexStar& star, std::size_t lane) const {
+    const std::size_t n = star.neighbours();
+    if constexpr (!kAttributes)
+      for (std::size_t ab = 0; ab < RetriangulationBatch::pair(0, n); ++ab) batch.barred[ab][lane] = 0;
+    if (!star.closed) return;
+    const auto at = [&](std::size_t i) { return point_of(vertices_[star.ring.vertex[i % n]].position); };
+    const DVec3 v = point_of(vertices_[star.vertex].position);
+    for (std::size_t i = 0; i < n; ++i)
+      if (mesh_.is_ghost(beyond(star, i)) && mesh_.is_ghost(beyond(star, (i + 1) % n)) &&
+          !ear_stays_in_place(v, at(i), at(i + 1), at(i + 2))) {
+        const std::size_t k = (i + 2) % n, edge = RetriangulationBatch::pair(std::min(i, k), std::max(i, k));
+        batch.barred[n > 3 ? edge : RetriangulationBatch::pair(0, 2)][lane] = kNone;
+      }
   }
 
   /// Calls use(a, b) for the neighbours at the ends of each new edge.
@@ -299,6 +327,10 @@ class VertexRemovals {
       if (!queue_.is_due(v, cost)) return queue_.insert(v, cost);
     }
     if (reason != Reason::kNone) return park(v, reason);
+    if (!Queue::kExact && removal.heir >= 0) {
+      const float cost = cost_of_drift(star, static_cast<std::size_t>(removal.heir));
+      if (cost > 0 && !queue_.is_due(v, cost)) return queue_.insert(v, cost);
+    }
     remove(removal);
   }
 
@@ -329,6 +361,8 @@ class VertexRemovals {
       return removal.error < kNone && !(removal.is_filled_again && exceeds_error());
     }
     [[nodiscard]] bool folds_over() const {
+      if (removal.heir >= 0)
+        return self.folds_over_as_collapse(star(), static_cast<std::size_t>(removal.heir));
       const std::span<const std::uint32_t> ring = std::span(star().ring.vertex).first(star().neighbours());
       return detail::folds_over(self.vertices_, star().vertex, ring, star().closed, removal.triangles.all());
     }
@@ -337,6 +371,27 @@ class VertexRemovals {
       return criteria == nullptr || !criteria->bounds() || self.meets_criteria(star(), removal.triangles);
     }
   };
+  /// A fan is what the collapse of the half-edge to its neighbour leaves.
+  [[nodiscard]] bool folds_over_as_collapse(const VertexStar& star, std::size_t heir) {
+    const std::uint32_t h = star.ring.edge[heir];
+    const Vector3 from = vertices_[star.vertex].position, to = vertices_[star.ring.vertex[heir]].position;
+    ring_p_.gather(mesh_, h);
+    ring_q_.gather(mesh_, mesh_.twin(h));
+    neighbourhood_.set(vertices_, ring_p_.ring(), ring_q_.ring());
+    return detail::folds_over(neighbourhood_, from, to, minus(to, from), state_.limits.cos_deviation);
+  }
+  /// Quadrics do not see tangential drift: a fan waits until the costs that are due allow for the distance
+  /// between the faces before and after the collapse that was judged last, times what the vertex stands for:
+  /// what that comes to at least, if it is more.
+  [[nodiscard]] float cost_of_drift(const VertexStar& star, std::size_t heir) const {
+    const VertexRecord& from = vertices_[star.vertex];
+    const Vector3& to = vertices_[star.ring.vertex[heir]].position;
+    if (!(from.weight > 0)) return 0;
+    const float allowed = queue_.level() / from.weight;
+    const float distance2 =
+        squared_distance_of_collapse(neighbourhood_, from.position, to, minus(to, from.position), allowed);
+    return distance2 > allowed ? from.weight * distance2 : 0.0f;
+  }
   [[nodiscard]] Reason judge_removal(Removal& removal) {
     const Reason reason = judge(Change{{}, *this, removal});
     // Without the edges that are there already it may cost more than it did.
@@ -420,13 +475,14 @@ class VertexRemovals {
     const auto walked = static_cast<std::uint32_t>(stars_.index_of(star));
     set(other_, other_attributes_, std::span(&walked, 1));
     while (bar_existing(star, removal.triangles)) {
-      fill(other_, other_attributes_, star.neighbours());
+      fill(other_, other_attributes_, star.neighbours(), 1);
       removal.is_filled_again = true;
       removal.error = other_.error[0];
       removal.of_attributes = error_of_attributes(other_attributes_, 0);
       if (!(removal.error < kNone)) break;
       removal.triangles = triangles_of(other_, 0, star);
       removal.receivers = receivers_of(other_, 0, star);
+      removal.heir = other_.heir[0];
     }
     for (auto& barred : other_.barred) barred[0] = 0;
   }
@@ -442,6 +498,7 @@ class VertexRemovals {
             error_of_attributes(attributes_, lane),
             triangles_of(batch_, lane, star),
             receivers_of(batch_, lane, star),
+            batch_.heir[lane],
             false};
   }
 
@@ -577,6 +634,8 @@ class VertexRemovals {
   /// edge, by the point nearest to v.
   [[nodiscard]] Receivers receivers_of(const RetriangulationBatch& batch, std::size_t lane,
                                        const VertexStar& star) const {
+    if (const std::int32_t heir = batch.heir[lane]; heir >= 0)
+      return {{static_cast<std::uint8_t>(heir), 0, 0}, {1, 0, 0}};
     std::size_t a = 0, c = star.neighbours() - 1;
     bool on_curve = !star.closed;
     if constexpr (kAttributes) {
@@ -635,6 +694,8 @@ class VertexRemovals {
   RetriangulationBatch batch_, other_;
   [[no_unique_address]] Attributes attributes_;  // at batch_
   [[no_unique_address]] Attributes other_attributes_;
+  LongRing ring_p_, ring_q_;  // of a collapse that a fan stands for
+  CollapseNeighbourhood neighbourhood_;
   LocalChange change_;  // that the removal changes which is looked at
   std::vector<Removal> due_;
   std::vector<Search> searches_;

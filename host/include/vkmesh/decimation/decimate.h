@@ -270,9 +270,12 @@ using Decimated = BasicDecimated<Vec3>;
 /// weighted by area, and the legal collapse of least cost is done, again and again. Vertex removal after W.
 /// Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes" (1992), with the best of all
 /// triangulations of the hole: that from which the old surface lies least far, where both are seen along the
-/// normal of the vertex. It makes no edge that exists, and gives the planes of the vertex to the corners of
-/// the triangle below it, each its barycentric share. A vertex of more than 16 neighbours stays until it has
-/// fewer. An edge collapse puts its point where the error is least.
+/// normal of the vertex. Where there is none, as on a sharp edge between faces large and small, the best fan
+/// of a neighbour takes the place of the faces, as in a half-edge collapse. It makes no edge that exists, no
+/// sliver (of less than 1e-4 of its squared sides) in the place of wider faces, and where the boundary is
+/// kept no face with two sides there that turns by more than 30 degrees. It gives the planes of the vertex to
+/// the corners of the triangle below it, each its barycentric share. A vertex of more than 16 neighbours
+/// stays until it has fewer. An edge collapse puts its point where the error is least.
 ///
 /// The same input gives the same bytes everywhere. Removals go by cost, to within 6 %; where the target is
 /// far from a large surface, what goes first goes in another order that comes to the same error. Late, a

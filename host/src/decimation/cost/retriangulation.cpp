@@ -20,6 +20,9 @@ using Flags = std::array<std::int32_t, kLanes>;
 
 /// A triangle of less area than this share of its squared sides has no reliable normal; as in folds_over.
 constexpr float kDegenerate = 1e-6f;
+/// A new triangle of less than this share of its squared sides is a sliver: it takes the place only of faces
+/// that were less than so many times as wide.
+constexpr float kSliver = 1e-4f, kThinner = 10;
 /// What a new edge counts, for each unit of v's area and of its squared length: it decides where the ground
 /// is as good as flat.
 constexpr float kOfLength = 1e-7f;
@@ -29,7 +32,7 @@ constexpr float kSteepest = 0.05f;
 /// Heights that are less than this share of the distance to the farthest neighbour may be rounding, and are
 /// 0.
 constexpr float kRounding = 1.0f / (1 << 21);
-constexpr float kNone = std::numeric_limits<float>::infinity();
+constexpr float kNone = RetriangulationBatch::kNone;
 
 constexpr std::size_t pair(std::size_t a, std::size_t b) {
   return RetriangulationBatch::pair(a, b);
@@ -52,6 +55,7 @@ struct alignas(64) Work {
   std::array<Lanes, kMaxNeighbours> limit,
       spoke;  // least product with a unit normal, squared; weight of a crossing
   std::array<Lanes, kMaxNeighbours> reliable;  // 0: the face has no reliable normal; else kNone
+  std::array<Lanes, kMaxNeighbours> slimmest;  // what a sliver in its place has of its squared sides, squared
   std::array<Lanes, kPairs> ahead, behind;     // max(0, left), max(0, -left)
   std::array<Lanes, kPairs> inside, outside;   // what a new edge crosses where v lies left of it, and right
   std::array<Lanes, kTriples> at_v, total;
@@ -107,7 +111,7 @@ void cross_all(Work& w) {
 }
 
 // The faces of v. What is the last where v lies on the boundary, is none, of no area.
-void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
+void find_faces(RetriangulationBatch& batch, Work& w, float square_cos) {
   const std::size_t n = w.n;
   for (std::size_t k = 0; k < 3; ++k) {
     w.up[k].fill(0);
@@ -131,6 +135,7 @@ void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
     w.up[1][l] = y * over;
     w.up[2][l] = z * over;
     w.area[l] = 0;
+    batch.steep[l] = 0;
   }
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = i + 1 < n ? i + 1 : 0;
@@ -142,9 +147,12 @@ void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
       const float twice = std::sqrt(x * x + y * y + z * z);
       const float looks = w.up[0][l] * x + w.up[1][l] * y + w.up[2][l] * z;
       const bool reliable = twice > kDegenerate * sides;
+      batch.steep[l] = std::max(batch.steep[l], reliable & (looks < 2 * kSteepest * twice) ? 1.0f : 0.0f);
       w.illegal[l] = std::max(w.illegal[l], looks >= -kDegenerate * sides ? 0.0f : kNone);
       w.limit[i][l] = reliable ? square_cos * (twice * twice) : -1e30f;
       w.reliable[i][l] = reliable ? kNone : 0.0f;
+      const float slimmest = twice / (kThinner * (sides > 0 ? sides : 1.0f));
+      w.slimmest[i][l] = slimmest * slimmest;
       w.area[l] += 0.5f * twice;
       w.quarter[i][l] = 0.25f * twice;
     }
@@ -153,8 +161,11 @@ void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
     const std::size_t before = i > 0 ? i - 1 : n - 1;
     VKMESH_FOR_LANES(l, kLanes) w.spoke[i][l] = (w.quarter[before][l] + w.quarter[i][l]) * w.back4[l];
   }
-  VKMESH_FOR_LANES(l, kLanes)
-  w.reliable[n - 1][l] = std::max(w.reliable[n - 1][l], batch.closed[l] > 0 ? 0.0f : kNone);
+  VKMESH_FOR_LANES(l, kLanes) {
+    const float is_none = batch.closed[l] > 0 ? 0.0f : kNone;
+    w.reliable[n - 1][l] = std::max(w.reliable[n - 1][l], is_none);
+    w.slimmest[n - 1][l] += is_none;
+  }
 }
 
 // On which side of each edge v lies; around it the ring goes once at most.
@@ -254,21 +265,23 @@ template <unsigned kSides>
     const bool holds = (x1 >= 0) & (x2 >= 0) & ((kSides & kCA) != 0 ? x3 >= 0 : x3 > 0) & (value > 0);
     const float at_v = holds ? value : 0.0f;
     const float size2 = nx * nx + ny * ny + nz * nz, looks = x1 + x2 + x3;
-    const float least = kDegenerate * (w.distance2[ab][l] + w.distance2[bc][l]);
+    const float sides = w.distance2[ab][l] + w.distance2[bc][l], least = kDegenerate * sides;
     const bool has_area = size2 > least * least;
     const float length2 = has_area ? size2 : 0.0f;
     float without = has_area ? 0.0f : kNone;
+    float thin = size2 > kSliver * kSliver * (sides * sides) ? 0.0f : kNone;
     bool misfit = has_area & (looks * std::fabs(looks) < kSteepest * kSteepest * size2);
     const auto turn = [&](std::size_t f) __attribute__((always_inline)) {
       const float along = nx * w.face[f][0][l] + ny * w.face[f][1][l] + nz * w.face[f][2][l];
       misfit |= has_area & (along * std::fabs(along) < w.limit[f][l] * length2);
       without = std::min(without, w.reliable[f][l]);
+      thin = size2 >= w.slimmest[f][l] * (sides * sides) ? 0.0f : thin;
     };
     if constexpr ((kSides & kAB) != 0) turn(a);
     if constexpr ((kSides & kBC) != 0) turn(b);
     if constexpr ((kSides & kCA) != 0) turn(last);
     w.at_v[abc][l] = at_v;
-    w.total[abc][l] = misfit ? kNone : at_v + without;
+    w.total[abc][l] = misfit ? kNone : at_v + (without + thin);
     w.inside[ac][l] += w.spoke[b][l] * apart2;
     w.outside[ab][l] += w.spoke[c][l] * apart2;
     w.outside[bc][l] += w.spoke[a][l] * apart2;
@@ -534,6 +547,7 @@ VKMESH_FLAT_CLONES void retriangulate(RetriangulationBatch& batch, std::size_t n
                                       float cos_deviation, RetriangulationAttributes* attributes) {
   Work w;
   w.n = neighbours;
+  batch.heir.fill(-1);
   scale_ring(batch, w);
   cross_all(w);
   find_faces(batch, w, cos_deviation * std::fabs(cos_deviation));

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <glm/geometric.hpp>
+
 #include "math/vector3.h"
 #include "simd/target_clones.h"
 
@@ -172,6 +174,16 @@ bool folds_over(const LargeArray<VertexRecord>& vertices, std::uint32_t vertex,
   for (std::size_t i = 0; i + (closed ? 0 : 2) < n; ++i)
     before = std::min(before, cosine(face(i), face(i + 1)));
   return after < before;
+}
+
+bool ear_stays_in_place(const DVec3& v, const DVec3& a, const DVec3& b, const DVec3& c) {
+  constexpr double kLeastCosine = 0.8660254037844386;
+  const auto normal = [](const DVec3& p, const DVec3& q, const DVec3& r) { return glm::cross(q - p, r - p); };
+  const DVec3 ear = normal(a, b, c);
+  const auto agrees = [&](const DVec3& before) {
+    return glm::dot(ear, before) >= kLeastCosine * glm::length(ear) * glm::length(before);
+  };
+  return agrees(normal(v, a, b)) && agrees(normal(v, b, c));
 }
 
 }  // namespace vkmesh::detail

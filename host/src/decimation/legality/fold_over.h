@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include <vkmesh/math/vec.h>
+
 #include "decimation/collapse_neighbourhood.h"
 #include "decimation/vertex_record.h"
 
@@ -22,5 +24,9 @@ namespace vkmesh::detail {
 [[nodiscard]] bool folds_over(const LargeArray<VertexRecord>& vertices, std::uint32_t vertex,
                               std::span<const std::uint32_t> ring, bool closed,
                               std::span<const std::array<std::uint8_t, 3>> triangles);
+
+/// Whether the triangle of a, b and c, two sides of which are on a boundary that is kept, looks within 30
+/// degrees of where those of v at these sides look.
+[[nodiscard]] bool ear_stays_in_place(const DVec3& v, const DVec3& a, const DVec3& b, const DVec3& c);
 
 }  // namespace vkmesh::detail
