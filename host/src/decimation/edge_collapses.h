@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -376,10 +377,12 @@ class EdgeCollapses {
       share_->queue.insert_now(h);
       return;
     }
-    const Reason reason = judge_edge(b, i, p, q);
+    const Reason reason = judge_edge(b, i, due, p, q);
     if (reason == Reason::kNone) {
-      if (!Placement::kByCriteria && watches_distance() && is_put_off(due, p, q)) return;
-      collapse(due, p, q);
+      const std::optional<float> later = cost_of_drift(due, p, q);
+      if (!later) return collapse(due, p, q);
+      if (const std::optional<Due> end = at_end(b, i, p, q)) return collapse(*end, p, q);
+      share_->queue.insert(h, *later);
     } else {
       ++share_->state.outcome.rejected[reason];
       mesh_.clear_tag(h, kQueued);
@@ -395,15 +398,33 @@ class EdgeCollapses {
            (!share_->only_at_boundary || (around().flags() & VertexRecord::kLocked) != 0);
   }
   /// Quadrics do not see tangential drift: a thin tip goes at next to no cost. So a legal collapse waits
-  /// until the costs that are due allow for the distance between the faces before and after.
-  [[nodiscard]] bool is_put_off(const Due& due, std::uint32_t p, std::uint32_t q) {
+  /// until the costs that are due allow for the distance between the faces before and after: under what it
+  /// waits in the queue, if it does.
+  [[nodiscard]] std::optional<float> cost_of_drift(const Due& due, std::uint32_t p, std::uint32_t q) {
+    if (Placement::kByCriteria || !watches_distance()) return std::nullopt;
     const float allowed = std::max(due.cost, share_->queue.level()) / share_->cost_of_distance;
     const float distance2 = merger_.squared_distance(due, p, q, allowed);
-    if (!(distance2 > allowed)) return false;
     const float cost = distance2 * share_->cost_of_distance;
-    if (share_->queue.is_due(due.half_edge, cost)) return false;
-    share_->queue.insert(due.half_edge, cost);
-    return true;
+    if (!(distance2 > allowed) || share_->queue.is_due(due.half_edge, cost)) return std::nullopt;
+    return cost;
+  }
+  /// The same collapse into an end of the edge, where that costs no more and need not wait: the corner of a
+  /// thin sheet, which its short side holds so weakly that the best place is found only nearly.
+  [[nodiscard]] std::optional<Due> at_end(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q) {
+    if (kAttributes || Placement::kAtEnds || b.due[i].end != EdgeBatch::kFree) return std::nullopt;
+    const Vector3 d = minus(vertices_[q].position, vertices_[p].position);
+    const std::array<Due, 2> ends = {
+        Due{b.due[i].half_edge, cost_at(p, q, {0.0f, 0.0f, 0.0f}, d), EdgeBatch::kAtP, {0.0f, 0.0f, 0.0f}},
+        Due{b.due[i].half_edge, cost_at(p, q, d, d), EdgeBatch::kAtQ, d}};
+    for (const Due& end : ends)
+      if (end.cost <= b.due[i].cost && judge_edge(b, i, end, p, q) == Reason::kNone &&
+          !cost_of_drift(end, p, q))
+        return end;
+    return std::nullopt;
+  }
+  /// Of p and q, which is at p + d, when both go to p + x.
+  [[nodiscard]] float cost_at(std::uint32_t p, std::uint32_t q, const Vector3& x, const Vector3& d) const {
+    return vertices_[p].quadric.value(x) + vertices_[q].quadric.value(minus(x, d));
   }
 
   [[nodiscard]] Reason judge_alone(std::uint32_t h) {
@@ -411,7 +432,7 @@ class EdgeCollapses {
     Pending& alone = *pending_[0];
     alone.due[0] = due_of(0, h);
     alone.walked[0].size = Pending::Ring::kTooLong;
-    return judge_edge(alone, 0, mesh_.origin(h), mesh_.target(h));
+    return judge_edge(alone, 0, alone.due[0], mesh_.origin(h), mesh_.target(h));
   }
 
   /// The collapse of edge i of a batch, as judge() takes it. It looks around when it comes to
@@ -440,8 +461,9 @@ class EdgeCollapses {
              self.meets_criteria(this->due, this->p, this->q);
     }
   };
-  [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q) {
-    return judge(Change{{{}, merger_, b.due[i], p, q, share_->state.limits.cos_deviation}, *this, b, i});
+  [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, const Due& due, std::uint32_t p,
+                                  std::uint32_t q) {
+    return judge(Change{{{}, merger_, due, p, q, share_->state.limits.cos_deviation}, *this, b, i});
   }
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q) {
