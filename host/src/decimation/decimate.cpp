@@ -56,11 +56,14 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
     pruned = prune_components(mesh,
                               static_cast<float>(frame.scale * options.prune_size->in_units(frame.diagonal)));
   Criteria criteria(options.weights, options.bounds, frame, mesh);
-  const Limits limits = limits_of(options, mesh.face_count(), frame);
+  Limits limits = limits_of(options, mesh.face_count(), frame);
+  const std::size_t faces = mesh.face_count() - pruned.faces,
+                    vertices = built.used_vertices - pruned.vertices;
+  keep_in_proportion(limits, mesh, options, faces, vertices);
   DecimationState state{.mesh = mesh,
                         .limits = limits,
-                        .faces = mesh.face_count() - pruned.faces,
-                        .vertices = built.used_vertices - pruned.vertices,
+                        .faces = faces,
+                        .vertices = vertices,
                         .keep_events = options.keep_history,
                         .attributes = attributes ? &*attributes : nullptr,
                         .criteria = criteria.ranks() || criteria.bounds() ? &criteria : nullptr,
@@ -106,6 +109,8 @@ std::string name_of(DecimateStop stop) {
       return "error bound";
     case DecimateStop::kTimeLimit:
       return "time limit";
+    case DecimateStop::kOutOfProportion:
+      return "out of proportion";
     case DecimateStop::kNoLegalCollapse:
       break;
   }

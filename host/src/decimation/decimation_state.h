@@ -25,6 +25,7 @@ class Criteria;
 
 struct Limits {
   std::size_t faces = 0, vertices = 0;
+  std::size_t vertices_asked = 0;  // less than `vertices` where the target is out of reach
   double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
   float cos_deviation = 0;
 };
@@ -123,6 +124,9 @@ struct DecimationState {
   Stop* stop = nullptr;  // none
 
   [[nodiscard]] bool at_target() const { return faces <= limits.faces || vertices <= limits.vertices; }
+  [[nodiscard]] bool at_what_was_asked() const {
+    return faces <= limits.faces || vertices <= limits.vertices_asked;
+  }
   /// Whether no more is to be removed.
   [[nodiscard]] bool reached() const { return at_target() || (stop != nullptr && stop->is_set()); }
   void ask() {

@@ -43,11 +43,14 @@ Result<Outcome> run_removals(DecimationState& state) {
       state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
       break;
     }
+    if (state.at_target() && !state.at_what_was_asked()) removals.count_blocked();
   }
   if (!stop.is_cancelled()) stop.report(1.0);
   VKMESH_CHECK(stop.check());
   if (state.outcome.stop == DecimateStop::kTargetReached && !state.at_target())
     state.outcome.stop = DecimateStop::kTimeLimit;
+  if (state.outcome.stop == DecimateStop::kTargetReached && !state.at_what_was_asked())
+    state.outcome.stop = DecimateStop::kOutOfProportion;
   return std::move(state.outcome);
 }
 

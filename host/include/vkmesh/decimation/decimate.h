@@ -76,6 +76,9 @@ struct DecimateTargets {
   std::optional<double> ratio;
   /// So many seconds have passed; at least 0. The only target whose result depends on the machine.
   std::optional<double> seconds;
+  /// Go on to a target that what is locked, or held by seams or the boundary, puts out of reach. Default off:
+  /// at least an eighth of the share that was asked for is left of the vertices that may go.
+  bool force = false;
 };
 
 /// What a removal costs, the cheapest being done first: A (quadric² Q + L² (density² + aspect_ratio² (1 -
@@ -165,13 +168,14 @@ struct DecimateOptions {
 };
 
 enum class DecimateStop {
-  kTargetReached,   ///< One of DecimateTargets but the time was met.
-  kErrorBound,      ///< No collapse is left; some were refused for their error.
-  kTimeLimit,       ///< DecimateTargets::seconds have passed.
-  kNoLegalCollapse  ///< Every remaining collapse is illegal (link condition, fold-over, locked vertices).
+  kTargetReached,    ///< One of DecimateTargets but the time was met.
+  kErrorBound,       ///< No collapse is left; some were refused for their error.
+  kTimeLimit,        ///< DecimateTargets::seconds have passed.
+  kOutOfProportion,  ///< The target is out of reach, and was not to be forced; see DecimateTargets::force.
+  kNoLegalCollapse   ///< Every remaining collapse is illegal (link condition, fold-over, locked vertices).
 };
 
-/// "target reached", "error bound", "time limit", "no legal collapse".
+/// "target reached", "error bound", "time limit", "out of proportion", "no legal collapse".
 [[nodiscard]] VKMESH_API std::string name_of(DecimateStop stop);
 
 /// One collapse or removal. Vertices and faces are the input's.

@@ -21,6 +21,29 @@ bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t 
   });
 }
 
+/// Of the share of vertices that is to be left, so much at least is left of those that may go.
+constexpr double kLeastShare = 0.125;
+
+/// How many vertices stay whatever goes, of so many: those that are locked, or as many as components need at
+/// least, which is four for each that is closed like a sphere.
+std::size_t held_vertices(const CollapseMesh& mesh, const DecimateOptions& options, std::size_t faces,
+                          std::size_t vertices) {
+  const DecimateLocks& locks = options.locked;
+  const bool any_locked = !locks.vertices.empty() || !locks.edges.empty() || !locks.faces.empty() ||
+                          options.curves.boundary == DecimateBoundary::kKept || !options.attributes.empty() ||
+                          !options.corner_groups.empty();
+  std::size_t locked = 0;
+  for (std::uint32_t v = 0; any_locked && v < mesh.apex(); ++v) {
+    const VertexRecord& vertex = mesh.vertices[v];
+    locked += vertex.alive() && vertex.has(VertexRecord::kLocked) ? 1 : 0;
+  }
+  // No more components than half of Euler's characteristic would be no spheres.
+  const std::size_t boundary = mesh.half_edge_bound() / 4 - mesh.face_count();
+  const auto euler =
+      static_cast<std::ptrdiff_t>(vertices + faces) - static_cast<std::ptrdiff_t>((3 * faces + boundary) / 2);
+  return std::max(locked, static_cast<std::size_t>(2 * std::max<std::ptrdiff_t>(euler, 0)));
+}
+
 }  // namespace
 
 void lock_vertices(CollapseMesh& mesh, std::span<const std::uint32_t> corners,
@@ -71,13 +94,26 @@ Limits limits_of(const DecimateOptions& options, std::size_t faces, const Frame&
     const auto share = std::llround(*options.target.ratio * static_cast<double>(faces));
     limits.faces = std::max(limits.faces, static_cast<std::size_t>(share));
   }
-  limits.vertices = options.target.vertices.value_or(0);
+  limits.vertices = limits.vertices_asked = options.target.vertices.value_or(0);
   if (options.bounds.error) {
     const double error = frame.scale * options.bounds.error->in_units(frame.diagonal);
     limits.error2 = error * error;
   }
   limits.cos_deviation = static_cast<float>(std::cos(options.bounds.normal_deviation));
   return limits;
+}
+
+void keep_in_proportion(Limits& limits, const CollapseMesh& mesh, const DecimateOptions& options,
+                        std::size_t faces, std::size_t vertices) {
+  if (options.target.force) return;
+  const auto share = [](std::size_t asked, std::size_t all) {
+    return all > 0 ? std::min(1.0, static_cast<double>(asked) / static_cast<double>(all)) : 0.0;
+  };
+  const double ratio = std::max(share(limits.faces, faces), share(limits.vertices, vertices));
+  if (ratio == 0) return;
+  const auto held = static_cast<double>(std::min(vertices, held_vertices(mesh, options, faces, vertices)));
+  const double kept = kLeastShare * ratio * (static_cast<double>(vertices) - held);
+  if (kept >= 1) limits.vertices = std::max(limits.vertices, static_cast<std::size_t>(held + kept));
 }
 
 double mean_weight_of(const CollapseMesh& mesh) {

@@ -30,6 +30,12 @@ void lock_vertices(CollapseMesh& mesh, std::span<const std::uint32_t> corners,
 /// In local units; ratios are those of `faces`.
 [[nodiscard]] Limits limits_of(const DecimateOptions& options, std::size_t faces, const Frame& frame);
 
+/// Raises the limit of the vertices, of which there are so many, as faces, unless the target is to be forced:
+/// where many stay whatever goes, a target that they put out of reach would be bought with all the rest. Of
+/// those that may go an eighth of the share that was asked for is left. O(n) where any are locked.
+void keep_in_proportion(Limits& limits, const CollapseMesh& mesh, const DecimateOptions& options,
+                        std::size_t faces, std::size_t vertices);
+
 /// The mean weight of vertices, by a sample.
 [[nodiscard]] double mean_weight_of(const CollapseMesh& mesh);
 
