@@ -1,5 +1,6 @@
 // vkmesh simplify: fewer triangles, by quadric error.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -30,9 +32,8 @@ struct SimplifyOptions {
   std::optional<double> ratio;
   std::optional<std::size_t> faces, vertices;
   std::optional<double> error, relative_error, time_limit, crease_angle, prune_size, prune_relative_size;
-  std::string lock;
-  std::vector<std::string> attributes;
-  bool index_only = false;
+  AttributeChoice attributes;
+  bool index_only = false, force_target = false;
   double max_normal_deviation = DecimateBounds{}.normal_deviation / kRadians;
 };
 
@@ -61,7 +62,22 @@ std::string describe(const CountByReason& counts) {
   return text.empty() ? "nothing" : text;
 }
 
-std::string why(DecimateStop stop, const SimplifyOptions& options, const CountByReason& blocked) {
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// Which options free what seams block.
+std::string how_to_free_seams(const SimplifyAttributes& attributes) {
+  std::vector<std::string> options;
+  for (const std::string& name : attributes.corner_names()) options.push_back("--drop-attribute " + name);
+  if (!attributes.borders().empty()) options.emplace_back("--no-material-borders");
+  return options.empty() ? std::string() : "; " + joined(options) + " would free seams";
+}
+
+std::string why(DecimateStop stop, const SimplifyOptions& options, const SimplifyAttributes& attributes,
+                const CountByReason& blocked) {
   switch (stop) {
     case DecimateStop::kTargetReached:
       return "the target was reached";
@@ -72,8 +88,14 @@ std::string why(DecimateStop stop, const SimplifyOptions& options, const CountBy
              " holds what is left: " + describe(blocked);
     case DecimateStop::kTimeLimit:
       return "the time was up";
+    case DecimateStop::kOutOfProportion:
+      return "the target is out of reach, and more would take the shape of all that may go (--force-target "
+             "goes "
+             "on): " +
+             describe(blocked) + (blocked[Reason::kSeam] > 0 ? how_to_free_seams(attributes) : std::string());
     case DecimateStop::kNoLegalCollapse:
-      return "what is left is illegal: " + describe(blocked);
+      return "what is left is illegal: " + describe(blocked) +
+             (blocked[Reason::kSeam] > 0 ? how_to_free_seams(attributes) : std::string());
   }
   return {};
 }
@@ -89,7 +111,8 @@ DecimateOptions decimation_of(const SimplifyOptions& options) {
   DecimateOptions decimation;
   if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
   if (options.operation == "vertex-removal") decimation.operation = DecimateOperation::kVertexRemoval;
-  decimation.target = {options.faces, options.vertices, options.ratio, options.time_limit};
+  decimation.target = {options.faces, options.vertices, options.ratio, options.time_limit,
+                       options.force_target};
   if (options.boundary == "kept") decimation.curves.boundary = DecimateBoundary::kKept;
   if (options.boundary == "free") decimation.curves.boundary = DecimateBoundary::kFree;
   if (options.crease_angle) decimation.curves.crease_angle = *options.crease_angle * kRadians;
@@ -130,6 +153,38 @@ std::vector<std::uint32_t> isolated_points(const HalfEdgeMesh& mesh, std::size_t
   return found;
 }
 
+/// The ends of boundary edges that lie where two or more others do: of three sheets that meet in a curve,
+/// which consolidation has parted.
+std::vector<std::uint32_t> ends_on_shared_curves(const HalfEdgeMesh& mesh, const std::vector<Vec3>& points) {
+  using Place = std::array<float, 3>;
+  struct Side {
+    Place low, high;
+    std::uint32_t half_edge;
+    [[nodiscard]] bool lies_at(const Side& other) const { return low == other.low && high == other.high; }
+  };
+  const auto place = [&](VertexId v) {
+    return Place{points[v.index].x, points[v.index].y, points[v.index].z};
+  };
+  std::vector<Side> sides;
+  for (std::uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+    if (!mesh.is_boundary(HalfEdgeId(h))) continue;
+    const Place from = place(mesh.origin(HalfEdgeId(h))), to = place(mesh.target(HalfEdgeId(h)));
+    sides.push_back({std::min(from, to), std::max(from, to), h});
+  }
+  std::ranges::sort(sides, {}, [](const Side& s) { return std::tie(s.low, s.high); });
+  std::vector<std::uint32_t> ends;
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].lies_at(sides[first])) ++last;
+    for (std::size_t i = first; i < last && last - first > 2; ++i) {
+      ends.push_back(mesh.origin(HalfEdgeId(sides[i].half_edge)).index);
+      ends.push_back(mesh.target(HalfEdgeId(sides[i].half_edge)).index);
+    }
+  }
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return ends;
+}
+
 Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteria& criteria) {
   if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
       !options.time_limit)
@@ -156,9 +211,14 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   decimation.bounds = criteria.bounds();
   decimation.bounds.error = length_of(options.error, options.relative_error);
   decimation.bounds.normal_deviation = options.max_normal_deviation * kRadians;
-  if (!options.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.lock, decimation));
+  if (!options.attributes.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.attributes.lock, decimation));
+  if (const auto ends = ends_on_shared_curves(half_edges, mesh.points); !ends.empty()) {
+    job.note(count_of(ends.size(), "point") +
+             " on curves where three sheets or more meet stay in place, or gaps would open between them");
+    decimation.locked.vertices.insert(decimation.locked.vertices.end(), ends.begin(), ends.end());
+  }
   VKMESH_TRY(const SimplifyAttributes attributes,
-             SimplifyAttributes::of(job, mesh, options.attributes, points_stay));
+             SimplifyAttributes::of(job, mesh, half_edges, options.attributes, points_stay));
   attributes.add_to(decimation);
   // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
   std::vector<Vec3> points = std::move(mesh.points);
@@ -182,10 +242,8 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
     attributes.give(decimated, output);
     attributes.append_points(isolated, output);
     for (const std::uint32_t p : isolated) output.points.push_back(points[p]);
-    if (attributes.has_points() && !points_stay)
-      job.note(
-          "points were moved: each has the attributes of a point that it stands for, unless --attribute "
-          "names them");
+    if (const auto unmixed = attributes.unmixed_points(); !unmixed.empty() && !points_stay)
+      job.note("points were moved: each has the " + joined(unmixed) + " of a point that it stands for");
   }
   const double ratio =
       faces == 0 ? 1.0 : static_cast<double>(output.face_count()) / static_cast<double>(faces);
@@ -219,7 +277,7 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   if (!isolated.empty())
     job.row("isolated",
             count_of(isolated.size(), "point") + " that no face uses kept (--drop-isolated leaves them out)");
-  job.row("stopped", why(decimated.stop, options, decimated.blocked));
+  job.row("stopped", why(decimated.stop, options, attributes, decimated.blocked));
   job.row("collapses",
           grouped(decimated.collapses) + " done; refused " +
               grouped(decimated.rejected[Reason::kLinkCondition]) + " that would break the manifold, " +
@@ -227,11 +285,9 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
               (attributes.names().empty()
                    ? std::string()
                    : ", " + grouped(decimated.rejected[Reason::kSeam]) + " that would break a seam"));
-  std::string names;
-  for (const std::string& name : attributes.names()) names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty())
-    job.row("attributes", names + "; largest weighted error " + brief(decimated.attribute_error) +
-                              ", as a share of the ranges");
+  if (!attributes.names().empty())
+    job.row("attributes", joined(attributes.names()) + "; largest weighted error " +
+                              brief(decimated.attribute_error) + ", as a share of the ranges");
   return job.write(output);
 }
 
@@ -242,9 +298,9 @@ void add_simplify(CLI::App& app, Program& program) {
   command->footer(
       "The cheapest edge is collapsed, again and again, by quadric error; the first rule met stops it. "
       "Attributes\n"
-      "of points and faces stay with those that remain; those of corners, as texture coordinates, are made "
-      "to\n"
-      "fit. Runs on the host whatever --device says.\n\n"
+      "of points and corners, as texture coordinates, are made to fit, borders between materials keep their "
+      "shape.\n"
+      "Runs on the host whatever --device says.\n\n"
       "Examples:\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz small.ply --ratio 0.1\n"
       "  vkmesh simplify data/dragon/dragon_vrip.ply.gz near.ply --relative-error 1e-4 --boundary kept\n"
@@ -280,12 +336,19 @@ void add_simplify(CLI::App& app, Program& program) {
       ->check(CLI::IsMember({"kept", "in-shape", "free"}));
   command
       ->add_option(
-          "--attribute", options->attributes,
-          "An attribute of points or corners that counts in the error. At weight 1 a change over its\n"
+          "--attribute", options->attributes.weights,
+          "What an attribute of points or corners counts in the error. At weight 1 a change over its\n"
           "whole range counts as a move by the diagonal of the bounding box; default 0.01. More than\n"
-          "one may be given; all: each. What corners have but for normals counts, with the default\n"
-          "weight, if it is not named; seams stay closed. A weight of 0 leaves it and its seams out")
+          "one may be given; all: each. Without being named, all count but normals (those of points\n"
+          "are made to fit) and what numbers things; seams stay closed. A weight of 0: what points\n"
+          "have is made to fit, what corners have is left out, and its seams with it")
       ->type_name("NAME[=WEIGHT]");
+  command
+      ->add_option("--drop-attribute", options->attributes.dropped,
+                   "Leave an attribute of this name out, and its seams with it; more than one may be given")
+      ->type_name("NAME");
+  command->add_flag("!--no-material-borders", options->attributes.material_borders,
+                    "Let borders between materials (or other values of faces) go; else they are seams");
   command->add_flag("--index-only", options->index_only,
                     "Keep all points of the file as they are and where they are in it, and write fewer\n"
                     "triangles over them: for half-edge collapses and vertex removal");
@@ -306,6 +369,9 @@ void add_simplify(CLI::App& app, Program& program) {
   command->add_option("--vertices", options->vertices, "Stop at this number of points")
       ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
       ->type_name("N");
+  command->add_flag("--force-target", options->force_target,
+                    "Go on to a target that what is locked, kept or on seams puts out of reach, whatever\n"
+                    "becomes of the rest; else an eighth of the asked share is left of what may go");
   CLI::Option* relative_error =
       command
           ->add_option("--relative-error", options->relative_error,
@@ -325,11 +391,11 @@ void add_simplify(CLI::App& app, Program& program) {
   command
       ->add_option("--max-normal-deviation", options->max_normal_deviation,
                    "Do no collapse that turns a remaining face by more than this, in degrees;\n"
-                   "between 0 and 180, default 75")
+                   "from 0.001 to 179.999, default 75")
       ->type_name("DEG")
-      ->check(number_between(0, 180));
+      ->check(number_between(0.001, 179.999));
   command
-      ->add_option("--lock", options->lock,
+      ->add_option("--lock", options->attributes.lock,
                    "Name of an attribute: points and faces where it is not 0 stay as they are")
       ->type_name("NAME");
   CLI::Option* prune =

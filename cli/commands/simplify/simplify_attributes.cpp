@@ -18,6 +18,15 @@ bool can_be_mixed(const Channel& channel) {
          !std::holds_alternative<std::vector<std::uint32_t>>(channel.values);
 }
 
+/// Whether what points have takes part unless something else was said. Other small integers may number
+/// things.
+bool takes_part(const Channel& channel) {
+  const auto is = [&](const char* name) { return channel.name == name; };
+  const bool is_real = std::holds_alternative<std::vector<float>>(channel.values) ||
+                       std::holds_alternative<std::vector<double>>(channel.values);
+  return can_be_mixed(channel) && (is_real || is("normal") || is("uv") || is("color") || is("quality"));
+}
+
 std::vector<float> floats_of(const Channel& channel) {
   return std::visit([](const auto& v) { return std::vector<float>(v.begin(), v.end()); }, channel.values);
 }
@@ -58,21 +67,75 @@ Result<Weights> weights_by_name(const std::vector<std::string>& given) {
   return weights;
 }
 
-}  // namespace
+/// For each face a number for its value in the channel.
+std::vector<std::uint32_t> numbers_of_values(const Channel& channel) {
+  const std::size_t n = channel.components;
+  return std::visit(
+      [&](const auto& values) {
+        using Scalar = typename std::remove_cvref_t<decltype(values)>::value_type;
+        std::map<std::vector<Scalar>, std::uint32_t> known;
+        std::vector<std::uint32_t> numbers(values.size() / n);
+        for (std::size_t f = 0; f < numbers.size(); ++f) {
+          const auto first = values.begin() + static_cast<std::ptrdiff_t>(f * n);
+          const std::vector<Scalar> value(first, first + static_cast<std::ptrdiff_t>(n));
+          numbers[f] = known.try_emplace(value, static_cast<std::uint32_t>(known.size())).first->second;
+        }
+        return numbers;
+      },
+      channel.values);
+}
 
-Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh,
-                                                  const std::vector<std::string>& given, bool vertices_stay) {
-  VKMESH_TRY(Weights weights, weights_by_name(given));
+/// How many of the edges between two faces have different values of the channel on their sides.
+struct BorderCount {
+  std::size_t borders = 0, edges = 0;
+};
+BorderCount count_borders(const HalfEdgeMesh& mesh, const Channel& channel) {
+  const std::size_t n = channel.components;
+  BorderCount count;
+  std::visit(
+      [&](const auto& values) {
+        const std::span all(values);
+        for (std::uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+          const std::uint32_t twin = mesh.twin(HalfEdgeId(h)).index;
+          if (twin == kInvalid || twin < h) continue;
+          ++count.edges;
+          count.borders +=
+              std::ranges::equal(all.subspan(h / 3 * n, n), all.subspan(twin / 3 * n, n)) ? 0 : 1;
+        }
+      },
+      channel.values);
+  return count;
+}
+
+/// The first of the names that no channel of the mesh has.
+std::optional<std::string> unknown_name(const IndexedFaceSet& mesh, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (find_channel(mesh.point_channels, name) == nullptr &&
+        find_channel(mesh.corner_channels, name) == nullptr &&
+        find_channel(mesh.face_channels, name) == nullptr)
+      return name;
+  return std::nullopt;
+}
+
+/// Weights by name, and that of all others, if there is one.
+struct NamedWeights {
+  Weights by_name;
   std::optional<double> all;
-  if (const auto it = weights.find("all"); it != weights.end()) {
-    all = it->second;
-    weights.erase(it);
-  }
-  const auto weight_of = [&](const Channel& channel) -> std::optional<double> {
-    if (const auto it = weights.find(channel.name); it != weights.end()) return it->second;
+
+  [[nodiscard]] std::optional<double> of(const Channel& channel) const {
+    if (const auto it = by_name.find(channel.name); it != by_name.end()) return it->second;
     return can_be_mixed(channel) ? all : std::nullopt;
-  };
-  for (const auto& [name, weight] : weights) {
+  }
+};
+
+Result<NamedWeights> named_weights(const IndexedFaceSet& mesh, const std::vector<std::string>& given) {
+  NamedWeights result;
+  VKMESH_TRY(result.by_name, weights_by_name(given));
+  if (const auto it = result.by_name.find("all"); it != result.by_name.end()) {
+    result.all = it->second;
+    result.by_name.erase(it);
+  }
+  for (const auto& [name, weight] : result.by_name) {
     const Channel* channel = find_channel(mesh.point_channels, name);
     if (channel == nullptr) channel = find_channel(mesh.corner_channels, name);
     if (channel == nullptr)
@@ -84,16 +147,37 @@ Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh
       return fail(ErrorCode::kUsage,
                   "--attribute " + name + ": its values number things, and none lies between two");
   }
+  return result;
+}
+
+}  // namespace
+
+Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh,
+                                                  const HalfEdgeMesh& half_edges,
+                                                  const AttributeChoice& choice, bool vertices_stay) {
+  VKMESH_TRY(const NamedWeights weights, named_weights(mesh, choice.weights));
+  if (const auto name = unknown_name(mesh, choice.dropped))
+    return fail(ErrorCode::kUsage, "--drop-attribute " + *name +
+                                       ": the mesh has no attribute of this name (vkmesh info lists those "
+                                       "there are)");
+  for (auto* channels : {&mesh.point_channels, &mesh.corner_channels, &mesh.face_channels})
+    std::erase_if(*channels, [&](const Channel& channel) {
+      return std::ranges::find(choice.dropped, channel.name) != choice.dropped.end();
+    });
 
   SimplifyAttributes result;
   result.vertices_stay_ = vertices_stay;
   for (Channel& channel : mesh.point_channels) {
-    if (const auto weight = weight_of(channel))
+    std::optional<double> weight = weights.of(channel);
+    if (!weight && takes_part(channel) && channel.name != choice.lock)
+      weight = channel.name == "normal" ? 0.0 : kDefaultWeight;
+    // What does not count and can not change is taken along with the points.
+    if (weight && (*weight > 0 || !vertices_stay))
       result.parts_.push_back({result.point_channels_.size(), false, *weight, floats_of(channel)});
     result.point_channels_.push_back(std::move(channel));
   }
   for (Channel& channel : mesh.corner_channels) {
-    std::optional<double> weight = weight_of(channel);
+    std::optional<double> weight = weights.of(channel);
     if (weight == 0.0) {
       job.note("the attribute " + channel.name +
                " of corners was left out, and its seams with it: its weight is 0");
@@ -115,8 +199,44 @@ Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh
     result.each_corner_.resize(mesh.corners.size());
     std::iota(result.each_corner_.begin(), result.each_corner_.end(), 0u);
   }
+  if (choice.material_borders) result.find_borders(job, half_edges);
   for (const Part& part : result.parts_) result.names_.push_back(result.channel_of(part).name);
   return result;
+}
+
+void SimplifyAttributes::find_borders(Job& job, const HalfEdgeMesh& half_edges) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+  for (const Channel& channel : face_channels_) {
+    if (channel.name == "normal") continue;
+    const BorderCount count = count_borders(half_edges, channel);
+    if (count.borders == 0) continue;
+    if (can_be_mixed(channel) && 2 * count.borders >= count.edges) {
+      job.note("the attribute " + channel.name +
+               " of faces changes from face to face: its borders are not kept");
+      continue;
+    }
+    borders_.push_back(channel.name);
+    const std::vector<std::uint32_t> numbers = numbers_of_values(channel);
+    groups_.resize(half_edges.half_edge_count(), 0);
+    known.clear();
+    for (std::size_t c = 0; c < groups_.size(); ++c)
+      groups_[c] = known.try_emplace({groups_[c], numbers[c / 3]}, static_cast<std::uint32_t>(known.size()))
+                       .first->second;
+  }
+}
+
+std::vector<std::string> SimplifyAttributes::unmixed_points() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < point_channels_.size(); ++i)
+    if (std::ranges::none_of(parts_, [&](const Part& p) { return !p.of_corners && p.channel == i; }))
+      names.push_back(point_channels_[i].name);
+  return names;
+}
+
+std::vector<std::string> SimplifyAttributes::corner_names() const {
+  std::vector<std::string> names;
+  for (const Channel& channel : corner_channels_) names.push_back(channel.name);
+  return names;
 }
 
 void SimplifyAttributes::add_to(DecimateOptions& options) const {
@@ -130,6 +250,7 @@ void SimplifyAttributes::add_to(DecimateOptions& options) const {
     if (channel.name == "normal" && channel.components == 3) attribute.kind = AttributeKind::kNormal;
     options.attributes.push_back(attribute);
   }
+  options.corner_groups = groups_;
 }
 
 void SimplifyAttributes::give_faces(const Decimated& decimated, IndexedFaceSet& output) const {

@@ -1,5 +1,6 @@
 #include "commands/simplify/simplify_criteria.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -20,6 +21,10 @@ Result<DecimateWeights> SimplifyCriteria::weights() const {
                   "--criterion " + text + ": it is none of quadric, density, aspect-ratio, normals");
     *found->second = named.second;
   }
+  if (std::max({result.quadric, result.density, result.aspect_ratio, result.normals}) == 0)
+    return fail(ErrorCode::kUsage,
+                "--criterion: one of quadric, density, aspect-ratio and normals needs a "
+                "weight above 0");
   return result;
 }
 
@@ -78,7 +83,8 @@ void add_simplify_criteria(CLI::App& command, const std::shared_ptr<SimplifyCrit
       .add_option("--max-valence", bounds.valence,
                   "Give no vertex more than so many edges, unless one had more; at least 3")
       ->type_name("N")
-      ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()));
+      ->check(count_up_to(std::numeric_limits<std::uint32_t>::max()))
+      ->check(number_between(3, std::numeric_limits<std::uint32_t>::max()));
 }
 
 }  // namespace vkmesh::cli
