@@ -182,7 +182,7 @@ TEST_CASE("decimation: a target out of reach is not bought with what may go", "[
 
 TEST_CASE("decimation: vertices of thin parts go as they do by half-edge collapses",
           "[decimate][reference]") {
-  const IndexedFaceSet box = thin_box(4, 0.01f);
+  const IndexedFaceSet box = thin_box(3, 0.01f);
   DecimateOptions options = ways()[2];
   options.target.faces = 12;
   const Decimated d = run(box, options);
