@@ -138,10 +138,6 @@ class Hole {
       for (const std::size_t k : {i, (i + 1) % n_}) spoke_[k] += 0.25 * glm::length(twice);
     }
     up_ /= std::max(glm::length(up_), 1e-300);
-    for (std::size_t i = 0; i + (closed ? 0 : 1) < n_; ++i) {
-      const DVec3 normal = unit_normal(DVec3(0.0), r_[i], r_[(i + 1) % n_]);
-      is_steep = is_steep || (normal != DVec3(0.0) && glm::dot(up_, normal) < 2 * kSteepest);
-    }
     if (!is_graph()) return;
     for (std::size_t span = 1; span < n_; ++span)
       for (std::size_t a = 0; a + span < n_; ++a) fill(a, a + span, may_join);
@@ -155,8 +151,7 @@ class Hole {
     cost += quadric_.at(v_ + r_.front() + along_ * edge);
   }
 
-  double cost = kNone;    // infinite when there is no triangulation
-  bool is_steep = false;  // what takes the place of some face may be too steep along the normal
+  double cost = kNone;                                // infinite when there is no triangulation
   std::vector<std::array<std::size_t, 3>> triangles;  // by numbers in the ring
 
   /// What each neighbour takes over of what the vertex stands for: the corners of the triangle that holds it,
@@ -453,10 +448,9 @@ class Decimation {
     };
     if (closed && around.size() == 3 && makes_ear(v, around, 0, 2)) return {};
     const Hole hole(quadric_[v], at(v), places, closed, cos_deviation_, is_free);
-    if (!(hole.cost < kNone) || hole.is_steep) {
+    if (!(hole.cost < kNone)) {
       const Fan fan(quadric_[v], at(v), places, closed, cos_deviation_, is_free);
-      if (fan.cost < hole.cost) return fan_of(v, around, fan);
-      if (!(hole.cost < kNone)) return {};
+      return fan.cost < kNone ? fan_of(v, around, fan) : Step();
     }
     Step step{hole.cost, v, kGhost, {}, {}, {}};
     for (const auto& [a, b, c] : hole.triangles) step.added.push_back({around[a], around[b], around[c]});

@@ -19,7 +19,6 @@
 #include "decimation/cost/attribute_quadrics.h"
 #include "decimation/cost/fan.h"
 #include "decimation/cost/retriangulation.h"
-#include "decimation/cost/tangential_drift.h"
 #include "decimation/decimation_state.h"
 #include "decimation/edge_merger.h"
 #include "decimation/legality/criteria.h"
@@ -216,8 +215,7 @@ class VertexRemovals {
     const float cos_deviation = state_.limits.cos_deviation;
     retriangulate(batch, neighbours, cos_deviation, of_attributes);
     for (std::size_t lane = 0; lane < count; ++lane)
-      if (!(batch.error[lane] < kNone) || (batch.steep[lane] > 0 && batch.error[lane] > 0))
-        fill_with_fan(batch, neighbours, lane, cos_deviation, of_attributes);
+      if (!(batch.error[lane] < kNone)) fill_with_fan(batch, neighbours, lane, cos_deviation, of_attributes);
   }
 
   /// Puts walked stars, all of as many neighbours, into the lanes from 0 on. Four records are turned at a
@@ -327,10 +325,6 @@ class VertexRemovals {
       if (!queue_.is_due(v, cost)) return queue_.insert(v, cost);
     }
     if (reason != Reason::kNone) return park(v, reason);
-    if (!Queue::kExact && removal.heir >= 0) {
-      const float cost = cost_of_drift(star, static_cast<std::size_t>(removal.heir));
-      if (cost > 0 && !queue_.is_due(v, cost)) return queue_.insert(v, cost);
-    }
     remove(removal);
   }
 
@@ -379,18 +373,6 @@ class VertexRemovals {
     ring_q_.gather(mesh_, mesh_.twin(h));
     neighbourhood_.set(vertices_, ring_p_.ring(), ring_q_.ring());
     return detail::folds_over(neighbourhood_, from, to, minus(to, from), state_.limits.cos_deviation);
-  }
-  /// Quadrics do not see tangential drift: a fan waits until the costs that are due allow for the distance
-  /// between the faces before and after the collapse that was judged last, times what the vertex stands for:
-  /// what that comes to at least, if it is more.
-  [[nodiscard]] float cost_of_drift(const VertexStar& star, std::size_t heir) const {
-    const VertexRecord& from = vertices_[star.vertex];
-    const Vector3& to = vertices_[star.ring.vertex[heir]].position;
-    if (!(from.weight > 0)) return 0;
-    const float allowed = queue_.level() / from.weight;
-    const float distance2 =
-        squared_distance_of_collapse(neighbourhood_, from.position, to, minus(to, from.position), allowed);
-    return distance2 > allowed ? from.weight * distance2 : 0.0f;
   }
   [[nodiscard]] Reason judge_removal(Removal& removal) {
     const Reason reason = judge(Change{{}, *this, removal});

@@ -103,9 +103,11 @@ IndexedFaceSet thin_box(int n, float thickness) {
 /// Hills over a square, n by n.
 IndexedFaceSet terrain(std::uint32_t n) {
   IndexedFaceSet mesh = test::grid(n, n);
-  for (Vec3& p : mesh.points)
-    p.z = 0.5f * std::sin(0.7f * p.x + 0.3f * p.y) * std::cos(0.9f * p.y) + 0.15f * std::sin(2.3f * p.x) +
-          0.15f * std::cos(2.1f * p.y + p.x);
+  for (Vec3& p : mesh.points) {
+    const auto x = static_cast<double>(p.x), y = static_cast<double>(p.y);
+    p.z = static_cast<float>(0.33 * (1.5 * std::sin(.7 * x + .3 * y) * std::cos(.9 * y) +
+                                     .4 * std::sin(2.3 * x) + .4 * std::cos(2.1 * y + x)));
+  }
   return mesh;
 }
 

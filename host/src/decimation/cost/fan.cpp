@@ -106,8 +106,7 @@ void fill_with_fan(RetriangulationBatch& batch, std::size_t neighbours, std::siz
   }
   const bool split = attributes != nullptr && attributes->split[lane] != 0;
   const std::size_t last = split ? static_cast<std::size_t>(attributes->last[lane]) : neighbours - 1;
-  float least = batch.error[lane];
-  if (attributes != nullptr && least < RetriangulationBatch::kNone) least += attributes->error[lane];
+  float least = RetriangulationBatch::kNone;
   for (std::size_t heir = 0; heir < neighbours; ++heir) {
     if ((split || !hole.closed) && heir != 0 && heir != last) continue;
     const auto error = static_cast<float>(quadric_at(batch, hole.ring[heir], lane));

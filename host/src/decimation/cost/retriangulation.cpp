@@ -111,7 +111,7 @@ void cross_all(Work& w) {
 }
 
 // The faces of v. What is the last where v lies on the boundary, is none, of no area.
-void find_faces(RetriangulationBatch& batch, Work& w, float square_cos) {
+void find_faces(const RetriangulationBatch& batch, Work& w, float square_cos) {
   const std::size_t n = w.n;
   for (std::size_t k = 0; k < 3; ++k) {
     w.up[k].fill(0);
@@ -135,7 +135,6 @@ void find_faces(RetriangulationBatch& batch, Work& w, float square_cos) {
     w.up[1][l] = y * over;
     w.up[2][l] = z * over;
     w.area[l] = 0;
-    batch.steep[l] = 0;
   }
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = i + 1 < n ? i + 1 : 0;
@@ -147,7 +146,6 @@ void find_faces(RetriangulationBatch& batch, Work& w, float square_cos) {
       const float twice = std::sqrt(x * x + y * y + z * z);
       const float looks = w.up[0][l] * x + w.up[1][l] * y + w.up[2][l] * z;
       const bool reliable = twice > kDegenerate * sides;
-      batch.steep[l] = std::max(batch.steep[l], reliable & (looks < 2 * kSteepest * twice) ? 1.0f : 0.0f);
       w.illegal[l] = std::max(w.illegal[l], looks >= -kDegenerate * sides ? 0.0f : kNone);
       w.limit[i][l] = reliable ? square_cos * (twice * twice) : -1e30f;
       w.reliable[i][l] = reliable ? kNone : 0.0f;

@@ -78,9 +78,6 @@ struct RetriangulationBatch {
   alignas(64) std::array<std::array<std::int32_t, kLanes>, kPairs> third;
   /// Twice the signed area of v, a and b along the normal: whether v lies left of the edge from a to b.
   alignas(64) std::array<Lanes, kPairs> left;
-  /// 1: some face of v stands so steeply along the normal that the best in its place may be steeper than is
-  /// legal; else 0.
-  alignas(64) Lanes steep;
   /// The neighbour whose fan fills the hole and who takes over all, see fill_with_fan(); else -1.
   alignas(64) std::array<std::int32_t, kLanes> heir;
 };
