@@ -119,12 +119,13 @@ class Repair {
   /// Decides which faces to flip, one sheet of edge-connected faces after the other.
   Result<void> orient(bool cut_non_orientable) {
     flipped_.assign(source_face_.size(), 0);
-    std::vector<std::uint8_t> seen(source_face_.size(), 0);
+    sheet_of_.assign(source_face_.size(), kInvalid);
     std::vector<std::uint32_t> sheet;
     for (std::uint32_t seed = 0; seed < source_face_.size(); ++seed) {
-      if (seen[seed]) continue;
+      if (sheet_of_[seed] != kInvalid) continue;
+      const auto number = static_cast<std::uint32_t>(sheet_size_.size());
       sheet.assign(1, seed);
-      seen[seed] = 1;
+      sheet_of_[seed] = number;
       std::size_t flipped = 0;
       bool cut = false;
       for (std::size_t next = 0; next < sheet.size(); ++next) {
@@ -135,8 +136,8 @@ class Repair {
           if (g == kInvalid) continue;
           const std::uint32_t other = face_of_[g];
           const auto wanted = static_cast<std::uint8_t>(flipped_[f] ^ (mesh_.corners[h] == mesh_.corners[g]));
-          if (!seen[other]) {
-            seen[other] = 1;
+          if (sheet_of_[other] == kInvalid) {
+            sheet_of_[other] = number;
             flipped_[other] = wanted;
             sheet.push_back(other);
           } else if (flipped_[other] != wanted) {
@@ -153,8 +154,64 @@ class Repair {
       report_.cut_components += cut ? 1u : 0u;
       if (2 * flipped > sheet.size())
         for (const std::uint32_t f : sheet) flipped_[f] ^= 1;
+      sheet_size_.push_back(sheet.size());
     }
     return {};
+  }
+
+  /// Flips sheets, small ones first, while that gives edges of four, six, … faces more that run opposite
+  /// ways: only those can be paired. Each flip lowers the sum of what is in excess, so that it ends.
+  void orient_sheets_at_non_manifold_edges() {
+    struct Use {
+      std::size_t edge;
+      int direction;  // the faces that run up the edge, less those that run down
+    };
+    std::vector<int> excess(non_manifold_edges_.size(), 0);
+    std::vector<std::vector<std::uint32_t>> sheets_of_edge(non_manifold_edges_.size());
+    std::vector<std::vector<Use>> uses(sheet_size_.size());
+    for (std::size_t e = 0; e < non_manifold_edges_.size(); ++e) {
+      const std::vector<std::uint32_t>& edge = non_manifold_edges_[e];
+      if (edge.size() % 2 != 0) continue;
+      for (const std::uint32_t h : edge) {
+        const bool ascending = (mesh_.corners[h] < mesh_.corners[next(h)]) != (flipped_[face_of_[h]] != 0);
+        const std::uint32_t sheet = sheet_of_[face_of_[h]];
+        excess[e] += ascending ? 1 : -1;
+        uses[sheet].push_back({e, ascending ? 1 : -1});
+        sheets_of_edge[e].push_back(sheet);
+      }
+    }
+    // Uses of one edge by one sheet are one.
+    for (std::vector<Use>& of_sheet : uses) {
+      std::size_t kept = 0;
+      for (const Use& use : of_sheet) {  // edges ascend
+        if (kept > 0 && of_sheet[kept - 1].edge == use.edge)
+          of_sheet[kept - 1].direction += use.direction;
+        else
+          of_sheet[kept++] = use;
+      }
+      of_sheet.resize(kept);
+    }
+
+    std::vector<std::uint32_t> waiting(sheet_size_.size());
+    std::iota(waiting.begin(), waiting.end(), 0u);
+    std::stable_sort(waiting.begin(), waiting.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return sheet_size_[a] < sheet_size_[b]; });
+    std::vector<std::uint8_t> flips(sheet_size_.size(), 0);
+    for (std::size_t next_sheet = 0; next_sheet < waiting.size(); ++next_sheet) {
+      const std::uint32_t sheet = waiting[next_sheet];
+      int gain = 0;
+      for (const Use& use : uses[sheet])
+        gain += std::abs(excess[use.edge]) - std::abs(excess[use.edge] - 2 * use.direction);
+      if (gain <= 0) continue;
+      flips[sheet] ^= 1;
+      for (Use& use : uses[sheet]) {
+        excess[use.edge] -= 2 * use.direction;
+        use.direction = -use.direction;
+        const std::vector<std::uint32_t>& others = sheets_of_edge[use.edge];
+        waiting.insert(waiting.end(), others.begin(), others.end());
+      }
+    }
+    for (std::size_t f = 0; f < flipped_.size(); ++f) flipped_[f] ^= flips[sheet_of_[f]];
   }
 
   /// Chooses which faces stay joined at edges of three or more.
@@ -398,6 +455,8 @@ class Repair {
   std::vector<std::vector<std::uint32_t>>
       non_manifold_edges_;  ///< The half-edges of edges of three or more faces.
   std::vector<std::uint8_t> flipped_;
+  std::vector<std::uint32_t> sheet_of_;  ///< The sheet of edge-connected faces that each face is of.
+  std::vector<std::size_t> sheet_size_;  ///< Its faces.
   Matching matching_;
   EarClipper clipper_;
   std::vector<std::uint32_t> scratch_;
@@ -422,6 +481,7 @@ Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, Con
   steps.join_edges();
   VKMESH_CHECK(steps.orient(cut_non_orientable));
   VKMESH_CHECK(tick(0.6));
+  steps.orient_sheets_at_non_manifold_edges();
   steps.pair_faces_at_non_manifold_edges();
   steps.flip_faces();
   steps.split_points();

@@ -301,6 +301,35 @@ TEST_CASE("a cavity with one face turned stays a cavity", "[repair]") {
   CHECK(volume_of(result.face_set) == Approx(hollow));
 }
 
+TEST_CASE("a face turned among edges of four faces is turned back", "[repair]") {
+  // Four cubes stand on the edges of the top of a fifth; four of the upright edges have four faces, too.
+  for (const bool quads : {true, false}) {
+    const IndexedFaceSet one = quads ? test::quad_cube() : test::cube();
+    IndexedFaceSet five = one;
+    for (const Vec3 offset : {Vec3(1, 0, 1), Vec3(-1, 0, 1), Vec3(0, 1, 1), Vec3(0, -1, 1)})
+      five = test::both(five, one, offset);
+    five = weld(five).value().mesh;
+    const Consolidated sound = repaired(five);
+    CHECK(sound.report.flipped_faces == 0);
+    CHECK(std::abs(volume_of(sound.face_set) - 5) < 1e-6);
+
+    std::size_t turned = 0;
+    for (std::size_t f = 0; f < one.face_count(); ++f) {
+      const auto face = five.face(f);
+      if (!std::ranges::all_of(face, [&](std::uint32_t p) { return five.points[p].z == 1; })) continue;
+      std::reverse(five.corners.begin() + (face.data() - five.corners.data()),
+                   five.corners.begin() + (face.data() - five.corners.data()) +
+                       static_cast<std::ptrdiff_t>(face.size()));
+      ++turned;
+    }
+    REQUIRE(turned == (quads ? 1 : 2));
+    const Consolidated mended = repaired(five);
+    CHECK(mended.report.flipped_faces == turned);
+    CHECK(topology_of(mended.face_set).boundary_loops == 0);
+    CHECK(std::abs(volume_of(mended.face_set) - 5) < 1e-6);
+  }
+}
+
 TEST_CASE("a consistent surface that faces inward is left so: it may be a room", "[repair]") {
   IndexedFaceSet mesh = test::both(test::icosphere(1), test::bow_tie(), Vec3(9.0f));
   for (std::size_t c = 0; c < 3 * 80; c += 3) std::swap(mesh.corners[c], mesh.corners[c + 1]);
