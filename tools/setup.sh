@@ -6,8 +6,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(
-  ca-certificates cmake g++ ninja-build glslang-tools
-  libcli11-dev libexpected-dev libglm-dev libpng-dev libstb-dev libtbb-dev libvulkan-dev libvulkan-volk-dev libvulkan1 mesa-vulkan-drivers
+  ca-certificates cmake fonts-dejavu-core g++ ninja-build glslang-tools
+  libcli11-dev libexpected-dev libfreetype-dev libglm-dev libpng-dev libstb-dev libtbb-dev libvulkan-dev libvulkan-volk-dev libvulkan1 mesa-vulkan-drivers
   libtinygltf-dev nlohmann-json3-dev zlib1g-dev
 )
 case "${1:-}" in

@@ -17,7 +17,6 @@
 #include <vkmesh/mesh/triangulate.h>
 #include <vkmesh/picture/contact_sheet.h>
 #include <vkmesh/picture/png.h>
-#include <vkmesh/picture/text.h>
 #include <vkmesh/view/camera.h>
 #include <vkmesh/view/picture.h>
 
@@ -546,11 +545,11 @@ Result<void> run(Job& job, const RenderOptions& options) {
   if (options.error) VKMESH_CHECK(measure_errors(job, subjects));
   set_ranges(subjects, plan.range, options.show_flipped);
 
-  // Legends get a strip of their own, as high for all pictures, so that one camera serves them all.
-  const std::uint32_t scale = text_scale(plan.width);
+  // Legends get a strip of their own. The pictures above are as high for all, so that one camera serves them.
+  const std::uint32_t text_size = text_size_for(plan.width);
   std::uint32_t strip = 0;
   if (!options.no_legend)
-    for (const Subject& s : subjects) strip = std::max(strip, legend_height(s.legend, scale));
+    for (const Subject& s : subjects) strip = std::max(strip, legend_height(s.legend, text_size));
   if (strip > plan.height / 2) {
     job.note("the picture is too small for its legend, which was left out");
     strip = 0;
@@ -575,10 +574,11 @@ Result<void> run(Job& job, const RenderOptions& options) {
       VKMESH_TRY(camera, camera_for(subject.positions(), shape, options, plan));
     }
     VKMESH_TRY(Picture drawn, draw(job, *context, subject, camera, target, options, plan));
-    VKMESH_TRY(Picture whole, Picture::create(plan.width, plan.height, plan.background));
+    const std::uint32_t below = strip > 0 ? legend_height(subject.legend, text_size) : 0;
+    VKMESH_TRY(Picture whole, Picture::create(plan.width, height + below, plan.background));
     paste(whole, drawn, 0, 0);
-    if (strip > 0 && !subject.legend.empty()) {
-      VKMESH_TRY(const Picture legend, legend_strip(subject.legend, plan.width, plan.background, scale));
+    if (below > 0) {
+      VKMESH_TRY(const Picture legend, legend_strip(subject.legend, plan.width, plan.background, text_size));
       paste(whole, legend, 0, height);
     }
     cells.push_back({std::move(whole), {}});

@@ -10,8 +10,6 @@
 namespace vkmesh {
 namespace {
 
-constexpr std::int64_t kPadding = 8;  ///< Pixels of the face.
-constexpr std::int64_t kBarHeight = 8;
 constexpr std::size_t kMostTicks = 7;
 
 /// Black or white, whichever is farther from the background.
@@ -20,13 +18,13 @@ Color ink_on(Color background) {
   return dark ? Color{240, 240, 240} : Color{30, 32, 36};
 }
 
-/// A line at the given scale, at a smaller one where it is too wide, and at last without its end.
-void draw_line(Picture& picture, std::int64_t x, std::int64_t y, std::string text, std::int64_t width,
-               Color ink, std::uint32_t scale) {
-  while (scale > 1 && text_width(text, scale) > width) --scale;
-  while (!text.empty() && text_width(text, scale) > width) text.pop_back();
-  draw_text(picture, x, y, text, ink, scale);
-}
+/// Lengths of a strip of text of one size, in pixels.
+struct Layout {
+  explicit Layout(std::uint32_t text_size)
+      : line(line_height(text_size)), padding(line / 2), bar(line / 2), gap(line / 3), tick(line / 6) {}
+
+  std::int64_t line, padding, bar, gap, tick;
+};
 
 std::string tick_text(double value, double step) {
   // Rounding of the ticks' sum must not show as 1e-17.
@@ -38,35 +36,36 @@ std::string tick_text(double value, double step) {
 
 }  // namespace
 
-std::uint32_t text_scale(std::uint32_t width) {
-  return width >= 1600 ? 3 : width >= 320 ? 2 : 1;
+std::uint32_t text_size_for(std::uint32_t width) {
+  return std::clamp(width / 54, 11u, 30u);
 }
 
-std::uint32_t legend_height(const Legend& legend, std::uint32_t scale) {
+std::uint32_t legend_height(const Legend& legend, std::uint32_t text_size) {
   if (legend.empty()) return 0;
-  const std::int64_t line = text_height() + 2;
-  std::int64_t height = kPadding;
-  if (!legend.title.empty()) height += line + kBarHeight + 4 + line;
-  height += line * static_cast<std::int64_t>(legend.swatches.size());
-  return static_cast<std::uint32_t>(height) * scale;
+  const Layout at(text_size);
+  std::int64_t height = at.padding + at.line * static_cast<std::int64_t>(legend.swatches.size());
+  if (!legend.title.empty()) height += at.line + at.bar + at.gap + at.line;
+  return static_cast<std::uint32_t>(height);
 }
 
 Result<Picture> legend_strip(const Legend& legend, std::uint32_t width, Color background,
-                             std::uint32_t scale) {
+                             std::uint32_t text_size) {
   return detail::catching([&]() -> Result<Picture> {
-    VKMESH_TRY(Picture strip, Picture::create(width, legend_height(legend, scale), background));
+    VKMESH_TRY(Picture strip, Picture::create(width, legend_height(legend, text_size), background));
+    if (legend.empty()) return strip;
+    VKMESH_TRY(TextFace face, TextFace::create(text_size));
     const Color ink = ink_on(background);
-    const std::int64_t s = scale, left = kPadding * s, line = (text_height() + 2) * s;
-    const std::int64_t bar = std::max<std::int64_t>(std::int64_t{width} - 2 * left, 1);
-    std::int64_t y = kPadding / 2 * s;
+    const Layout at(text_size);
+    const std::int64_t left = at.padding, bar = std::max<std::int64_t>(std::int64_t{width} - 2 * left, 1);
+    std::int64_t y = at.padding / 2;
     if (!legend.title.empty()) {
-      draw_line(strip, left, y, legend.title, bar, ink, scale);
-      y += line;
+      face.draw(strip, left, y, face.beginning_that_fits(legend.title, bar), ink);
+      y += at.line;
       const ColorTable table = color_table(legend.map);
       for (std::int64_t x = 0; x < bar; ++x)
-        fill_rectangle(strip, left + x, y, 1, kBarHeight * s,
+        fill_rectangle(strip, left + x, y, 1, at.bar,
                        table[static_cast<std::size_t>(x * 255 / std::max<std::int64_t>(bar - 1, 1))]);
-      y += kBarHeight * s;
+      y += at.bar;
       // As many ticks as stand apart.
       const double span = legend.range.high - legend.range.low;
       const auto place = [&](double value) {
@@ -82,7 +81,7 @@ Result<Picture> legend_strip(const Legend& legend, std::uint32_t width, Color ba
         std::vector<Label> labels;
         for (const double value : ticks) {
           Label label{place(value), 0, 0, tick_text(value, ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0)};
-          label.width = text_width(label.text, scale);
+          label.width = face.width(label.text);
           label.x =
               std::clamp<std::int64_t>(label.tick - label.width / 2, left / 2,
                                        std::max<std::int64_t>(left / 2, width - left / 2 - label.width));
@@ -90,20 +89,23 @@ Result<Picture> legend_strip(const Legend& legend, std::uint32_t width, Color ba
         }
         bool apart = true;
         for (std::size_t i = 1; i < labels.size(); ++i)
-          apart = apart && labels[i - 1].x + labels[i - 1].width + 4 * s <= labels[i].x;
+          apart = apart && labels[i - 1].x + labels[i - 1].width + at.gap <= labels[i].x;
         if (!apart && most > 2) continue;
         for (const Label& label : labels) {
-          fill_rectangle(strip, label.tick - s / 2, y, s, 3 * s, ink);
-          draw_text(strip, label.x, y + 4 * s, label.text, ink, scale);
+          fill_rectangle(strip, label.tick - at.tick / 4, y, std::max<std::int64_t>(at.tick / 2, 1), at.tick,
+                         ink);
+          face.draw(strip, label.x, y + at.gap, label.text, ink);
         }
         break;
       }
-      y += 4 * s + line;
+      y += at.gap + at.line;
     }
     for (const Legend::Swatch& swatch : legend.swatches) {
-      fill_rectangle(strip, left, y, 7 * s, 7 * s, swatch.color);
-      draw_line(strip, left + 11 * s, y, swatch.text, bar - 11 * s, ink, scale);
-      y += line;
+      // As high as a capital, and on the base line.
+      const std::int64_t side = std::int64_t{text_size} * 3 / 4, indent = side + at.gap;
+      fill_rectangle(strip, left, y + text_size - side, side, side, swatch.color);
+      face.draw(strip, left + indent, y, face.beginning_that_fits(swatch.text, bar - indent), ink);
+      y += at.line;
     }
     return strip;
   });
@@ -119,10 +121,10 @@ Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t colu
       height = std::max(height, cell.picture.height());
       lines = std::max(lines, cell.caption.size());
     }
-    const std::uint32_t scale = text_scale(width);
-    const std::int64_t line = (text_height() + 2) * scale;
+    const std::uint32_t text_size = text_size_for(width);
+    const Layout at(text_size);
     const std::int64_t cell_height =
-        height + (lines > 0 ? line * static_cast<std::int64_t>(lines) + 6 * scale : 0);
+        height + (lines > 0 ? at.line * static_cast<std::int64_t>(lines) + at.padding : 0);
     if (columns == 0) {
       // The columns that give the sheet most nearly four to three.
       double best = std::numeric_limits<double>::infinity();
@@ -153,16 +155,18 @@ Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t colu
                                          std::to_string(sheet_height) + " pixels is too large");
     VKMESH_TRY(Picture sheet, Picture::create(static_cast<std::uint32_t>(sheet_width),
                                               static_cast<std::uint32_t>(sheet_height), background));
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      paste(sheet, cells[i].picture, static_cast<std::int64_t>(i % columns) * width, row_top[i / columns]);
+    if (lines == 0) return sheet;
+    VKMESH_TRY(TextFace face, TextFace::create(text_size));
     const Color ink = ink_on(background);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::int64_t x = static_cast<std::int64_t>(i % columns) * width;
-      std::int64_t y = row_top[i / columns];
-      paste(sheet, cells[i].picture, x, y);
-      y += row_pictures[i / columns] + 2 * scale;
+      std::int64_t y = row_top[i / columns] + row_pictures[i / columns] + at.padding / 2;
       for (const std::string& text : cells[i].caption) {
-        const std::string fitting = text_that_fits(text, width - 8 * scale, scale);
-        draw_text(sheet, x + (width - text_width(fitting, scale)) / 2, y, fitting, ink, scale);
-        y += line;
+        const std::string fitting = face.end_that_fits(text, width - 2 * at.padding);
+        const std::int64_t left = static_cast<std::int64_t>(i % columns) * width;
+        face.draw(sheet, left + (width - face.width(fitting)) / 2, y, fitting, ink);
+        y += at.line;
       }
     }
     return sheet;

@@ -93,38 +93,91 @@ TEST_CASE("colours are read as they are written in style sheets") {
 }
 
 TEST_CASE("text takes the place that it says, and no other") {
-  Picture picture = value(Picture::create(300, 40, kWhite));
-  const std::string text = "Agy|8, 50 %";
-  for (const std::uint32_t scale : {1u, 2u}) {
-    fill_rectangle(picture, 0, 0, 300, 40, kWhite);
-    draw_text(picture, 10, 5, text, kBlack, scale);
-    std::int64_t left = 300, right = 0, top = 40, bottom = 0;
-    for (std::uint32_t y = 0; y < 40; ++y)
-      for (std::uint32_t x = 0; x < 300; ++x)
-        if (picture.at(x, y) == kBlack) {
-          left = std::min<std::int64_t>(left, x);
-          right = std::max<std::int64_t>(right, x + 1);
-          top = std::min<std::int64_t>(top, y);
-          bottom = std::max<std::int64_t>(bottom, y + 1);
-        }
+  const std::string text = "\xc3\x84gypten|8, 50 % \xe2\x80\xa6";
+  for (const std::uint32_t size : {11u, 15u, 30u}) {
+    CAPTURE(size);
+    TextFace face = value(TextFace::create(size));
+    const std::int64_t high = line_height(size), wide = face.width(text);
+    Picture picture = value(Picture::create(static_cast<std::uint32_t>(wide) + 20,
+                                            static_cast<std::uint32_t>(high) + 10, kWhite));
+    face.draw(picture, 10, 5, text, kBlack);
+    std::int64_t left = 1000, right = 0, top = 1000, bottom = 0;
+    std::size_t black = 0, grey = 0;
+    for (std::uint32_t y = 0; y < picture.height(); ++y)
+      for (std::uint32_t x = 0; x < picture.width(); ++x) {
+        if (picture.at(x, y) == kWhite) continue;
+        ++(picture.at(x, y) == kBlack ? black : grey);
+        left = std::min<std::int64_t>(left, x);
+        right = std::max<std::int64_t>(right, x + 1);
+        top = std::min<std::int64_t>(top, y);
+        bottom = std::max<std::int64_t>(bottom, y + 1);
+      }
     CHECK(left >= 10);
-    CHECK(left <= 10 + 3 * scale);
-    CHECK(right <= 10 + text_width(text, scale));
-    CHECK(right > 10 + text_width(text, scale) - 4 * scale);
+    CHECK(left <= 10 + size / 5);
+    CHECK(right <= 10 + wide);
+    CHECK(right >= 10 + wide - size / 3);
     CHECK(top >= 5);
-    CHECK(bottom <= 5 + text_height(scale));
-    CHECK(bottom > 5 + 7 * scale);
+    CHECK(bottom <= 5 + high);
+    CHECK(bottom - top >= size);  // from the dots of the first letter down to the tail of the second
+    CHECK(grey > 0);              // anti-aliased
+    if (size == 30) CHECK(black > 0);
+    // Half outside of the picture, and far outside.
+    face.draw(picture, -20, -3, text, kBlack);
+    face.draw(picture, wide, high, text, kBlack);
+    face.draw(picture, 4000, 4000, text, kBlack);
   }
-  CHECK(text_width("\xc3\xa4") == text_width("?"));
-  // Half outside of the picture, and far outside.
-  draw_text(picture, -20, -3, text, kBlack, 2);
-  draw_text(picture, 290, 30, text, kBlack, 2);
-  draw_text(picture, 4000, 4000, text, kBlack, 2);
-  CHECK(text_that_fits("short.ply", 400) == "short.ply");
-  const std::string fitting = text_that_fits("a/very/long/path/to/the/mesh.ply", 90);
-  CHECK(fitting.starts_with("..."));
-  CHECK(fitting.ends_with("mesh.ply"));
-  CHECK(text_width(fitting) <= 90);
+}
+
+TEST_CASE("text is UTF-8: letters have their own shapes, what is none has one") {
+  TextFace face = value(TextFace::create(20));
+  const auto drawn = [&](std::string_view text) {
+    Picture picture = value(Picture::create(60, 30, kWhite));
+    face.draw(picture, 5, 2, text, kBlack);
+    return std::vector<Color>(picture.pixels().begin(), picture.pixels().end());
+  };
+  CHECK(drawn("a") != drawn("\xc3\xa4"));
+  CHECK(drawn("\xc3\xa4") != drawn("\xce\xbb"));
+  const auto replacement = drawn("\xef\xbf\xbd");
+  CHECK(replacement != drawn(""));
+  // A stray byte, an overlong form, half of a pair, beyond Unicode, a form cut off.
+  for (const char* bad : {"\x80", "\xff"}) CHECK(drawn(bad) == replacement);
+  CHECK(drawn("\xc0\xaf") == drawn("\xef\xbf\xbd\xef\xbf\xbd"));
+  for (const char* bad : {"\xed\xa0\x80", "\xe0\x80\xaf"})
+    CHECK(drawn(bad) == drawn("\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"));
+  CHECK(drawn("\xe2\x80") == drawn("\xef\xbf\xbd\xef\xbf\xbd"));
+  CHECK(face.width("\xf4\x90\x80\x80") == face.width("\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"));
+}
+
+TEST_CASE("text too long is shortened at a whole character, at its beginning or its end") {
+  TextFace face = value(TextFace::create(14));
+  CHECK(face.end_that_fits("short.ply", 400) == "short.ply");
+  CHECK(face.beginning_that_fits("short.ply", 400) == "short.ply");
+  const std::string path = "a/very/long/\xc3\xa4\xc3\xb6\xc3\xbc/path/to/the/mesh.ply";
+  for (std::int64_t width = 0; width < face.width(path); width += 3) {
+    const std::string end = face.end_that_fits(path, width),
+                      beginning = face.beginning_that_fits(path, width);
+    for (const std::string& text : {end, beginning}) {
+      REQUIRE(face.width(text) <= width);
+      REQUIRE(text.find("\xef\xbf\xbd") == std::string::npos);
+    }
+    if (end.empty()) continue;
+    REQUIRE(end.starts_with("\xe2\x80\xa6"));
+    REQUIRE(path.ends_with(end.substr(3)));
+    REQUIRE(beginning.ends_with("\xe2\x80\xa6"));
+    REQUIRE(path.starts_with(beginning.substr(0, beginning.size() - 3)));
+  }
+  CHECK(face.end_that_fits(path, 90).ends_with("mesh.ply"));
+}
+
+TEST_CASE("a font that is not there is an error that says what to do") {
+  REQUIRE(setenv("VKMESH_FONT", "/nowhere/font.ttf", 1) == 0);
+  const auto missing = TextFace::create(12);
+  REQUIRE(unsetenv("VKMESH_FONT") == 0);
+  REQUIRE_FALSE(missing);
+  CHECK(missing.error().code == ErrorCode::kUnsuitable);
+  CHECK_THAT(missing.error().describe(), Catch::Matchers::Contains("/nowhere/font.ttf") &&
+                                             Catch::Matchers::Contains("fonts-dejavu-core"));
+  CHECK(TextFace::create(0).error().code == ErrorCode::kUsage);
 }
 
 TEST_CASE("colour maps rise evenly, and neighbouring colours are close") {
@@ -188,11 +241,12 @@ TEST_CASE("ticks are round numbers inside the range") {
 
 TEST_CASE("legends and contact sheets are as large as they say") {
   const Legend legend{"title", ColorMap::kSequential, {0, 1}, {{{1, 2, 3, 255}, "three edges"}}};
-  const Picture strip = value(legend_strip(legend, 200, kWhite, 1));
-  CHECK(strip.height() == legend_height(legend, 1));
-  CHECK(legend_height(legend, 2) == 2 * legend_height(legend, 1));
-  CHECK(legend_height({}, 1) == 0);
-  CHECK(count(strip, {1, 2, 3, 255}) == 49);
+  const Picture strip = value(legend_strip(legend, 200, kWhite, 12));
+  CHECK(strip.height() == legend_height(legend, 12));
+  CHECK(legend_height(legend, 24) == 2 * legend_height(legend, 12));
+  CHECK(legend_height({}, 12) == 0);
+  CHECK(value(legend_strip({}, 200, kWhite, 12)).height() == 0);
+  CHECK(count(strip, {1, 2, 3, 255}) == 81);
   // Both ends of the map are there.
   const ColorTable table = color_table(ColorMap::kSequential);
   CHECK(count(strip, table[0]) > 0);

@@ -28,15 +28,16 @@ struct Legend {
   [[nodiscard]] bool empty() const { return title.empty() && swatches.empty(); }
 };
 
-/// Pixels for each of the face's that suit a picture of this width: 1, 2 or 3.
-[[nodiscard]] VKMESH_API std::uint32_t text_scale(std::uint32_t width);
+/// The size of text, in pixels, that suits a picture of this width: from 11 to 30.
+[[nodiscard]] VKMESH_API std::uint32_t text_size_for(std::uint32_t width);
 
 /// Pixels that a legend takes; 0 when it is empty.
-[[nodiscard]] VKMESH_API std::uint32_t legend_height(const Legend& legend, std::uint32_t scale);
+[[nodiscard]] VKMESH_API std::uint32_t legend_height(const Legend& legend, std::uint32_t text_size);
 
-/// A strip of that height: title, colours with ticks, swatches. Errors: as Picture::create().
+/// A strip of that height: title, colours with ticks, swatches. Lines too long for it end in an ellipsis.
+/// Errors: as Picture::create() and TextFace::create().
 [[nodiscard]] VKMESH_API Result<Picture> legend_strip(const Legend& legend, std::uint32_t width,
-                                                      Color background, std::uint32_t scale);
+                                                      Color background, std::uint32_t text_size);
 
 struct SheetCell {
   Picture picture;
@@ -44,8 +45,9 @@ struct SheetCell {
 };
 
 /// Pictures in rows of `columns` (0: as square a sheet as fits the pictures' shape, wider rather than
-/// higher), each with its caption beneath. All cells get the size of the largest. Errors: kUsage for no
-/// cells; as Picture::create().
+/// higher), each with its caption beneath, all captions in one size. Columns are as wide as the widest
+/// picture, each row as high as its highest. Errors: kUsage for no cells; as Picture::create() and, where
+/// there are captions, TextFace::create().
 [[nodiscard]] VKMESH_API Result<Picture> contact_sheet(std::span<const SheetCell> cells, std::size_t columns,
                                                        Color background);
 
