@@ -357,6 +357,19 @@ void finish_channels(MeshFile& file) {
   }
 }
 
+bool has_points(const MeshFile& file) {
+  const auto* mesh = std::get_if<IndexedFaceSet>(&file.geometry);
+  return mesh != nullptr ? !mesh->points.empty() : !std::get<PolygonSoup>(file.geometry).corners.empty();
+}
+
+/// What the notes say of content that is not in the mesh.
+std::string passed_over(const std::vector<FileNote>& notes) {
+  std::string text;
+  for (const FileNote& note : notes)
+    if (note.is_loss()) text += (text.empty() ? " (" : "; ") + note.sentence;
+  return text.empty() ? text : text + ")";
+}
+
 Result<MeshFile> parse_content(Source source, const ReadOptions& options) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (source.bytes.starts_with(kByteOrderMark)) source.bytes.remove_prefix(kByteOrderMark.size());
@@ -366,6 +379,9 @@ Result<MeshFile> parse_content(Source source, const ReadOptions& options) {
   Positions positions(source.offset);
   source.positions = &positions;
   VKMESH_TRY(MeshFile file, parse_format(source));
+  if (!has_points(file))
+    return fail(ErrorCode::kUnreadable, "the file holds no points" + passed_over(file.notes),
+                {source.name, {}, {}});
   if (options.find_offset && options.offset == DVec3(0.0)) {
     // Far from the origin, which few meshes are: they are read a second time, relative to a point near them.
     const DVec3 offset = positions.better_offset();
@@ -383,6 +399,9 @@ Result<MeshFile> parse_content(Source source, const ReadOptions& options) {
 
 /// Refuses what no encoder could write: channels of the wrong size, indices and offsets that point nowhere.
 Result<void> check_writable(const IndexedFaceSet& mesh, const WriteOptions& options) {
+  if (mesh.points.empty())
+    return fail(ErrorCode::kUnsuitable,
+                "a mesh without points is not written: no reader would take the file");
   if (mesh.is_triangles()
           ? mesh.corners.size() % 3 != 0
           : mesh.face_offsets.front() != 0 || mesh.face_offsets.back() != mesh.corners.size() ||

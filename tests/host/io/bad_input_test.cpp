@@ -1,4 +1,5 @@
 #include <functional>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -99,6 +100,41 @@ bool become_nobody() {
 }
 
 }  // namespace
+
+TEST_CASE("Files without points have one answer in every format, and none are written", "[io]") {
+  const std::map<std::string, std::string> files = {
+      {"a.off", "OFF\n0 0 0\n"},
+      {"a.obj", "# nothing\n"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"},
+      {"text.stl", "solid a\nendsolid a\n"},
+      {"binary.stl", std::string(84, '\0')},
+      {"a.wrl", "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point [] } } }\n"},
+      {"a.iv", "#Inventor V2.1 ascii\nSeparator { Coordinate3 { point [] } IndexedFaceSet { } }\n"},
+      {"a.gltf", R"({"asset":{"version":"2.0"}})"},
+      {"a.xyz", "\n"}};
+  for (const auto& [name, content] : files) {
+    INFO(name);
+    const Error error = parse_error(content, name);
+    CHECK(error.code == ErrorCode::kUnreadable);
+    CHECK_THAT(error.message, Catch::Matchers::StartsWith("the file holds no "));
+  }
+  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl", "a.glb", "a.gltf", "a.iv", "a.wrl", "a.xyz"}) {
+    INFO(name);
+    const auto bytes = encode_mesh({}, write_options_for(name).value());
+    REQUIRE_FALSE(bytes);
+    CHECK(bytes.error().code == ErrorCode::kUnsuitable);
+  }
+}
+
+TEST_CASE("A file that is refused as empty names what was passed over", "[io]") {
+  const Error error = parse_error(
+      "#VRML V2.0 utf8\nShape { geometry IndexedLineSet { coord Coordinate { point [0 0 0, 1 1 1] } "
+      "coordIndex [0 1 -1] } }\n",
+      "lines.wrl");
+  CHECK_THAT(error.message, Catch::Matchers::Contains("IndexedLineSet"));
+}
 
 TEST_CASE("malformed files are refused with the place and a reason", "[io][bad]") {
   const std::string packed(36, '\0');

@@ -183,7 +183,7 @@ TEST_CASE("VRML 2 round trips are lossless for what they hold", "[io][vrml]") {
   cloud.points = icosphere(1).points;
   cloud.point_channels = {{"color", 3, ramp<float>(126, 0.005)}};
   for (const IndexedFaceSet& mesh :
-       with_scene_channels({torus(12, 8), quad_cube(), mixed_polygons(), cloud, IndexedFaceSet{}})) {
+       with_scene_channels({torus(12, 8), quad_cube(), mixed_polygons(), cloud})) {
     WriteOptions options = write_as(FileFormat::kVrml2, FileEncoding::kAscii);
     options.comment = "made by a test";
     const std::string bytes = encode(mesh, options);

@@ -67,8 +67,8 @@ struct ReadOptions {
 /// than three corners, and points that are not finite and that no face uses, are skipped and counted in the
 /// notes; a face that repeats a point is kept (consolidate counts it). Colours are 8-bit integers or
 /// fractions of 1, whatever type the file gives them. Errors: kUnreadable (missing, a directory, malformed,
-/// an index out of range, a coordinate that is not finite; with file and line or byte), kOutOfMemory,
-/// kInterrupted.
+/// without points, an index out of range, a coordinate that is not finite; with file and line or byte),
+/// kOutOfMemory, kInterrupted.
 [[nodiscard]] VKMESH_API Result<MeshFile> read_mesh(const std::filesystem::path& path,
                                                     const ReadOptions& options = {});
 
@@ -98,7 +98,7 @@ struct WriteOptions {
 /// Writes the mesh. The file appears whole or not at all: it is written beside its place, then renamed. "-"
 /// writes to standard output. What the format cannot hold (STL has no attributes) is left out and named in
 /// the returned notes. Normals, uv and colours that are not finite are written as 0. Errors: kNotWritable
-/// (with the system's reason), kUnsuitable (polygons or a point cloud into STL, faces into XYZ),
+/// (with the system's reason), kUnsuitable (no points; polygons or a point cloud into STL, faces into XYZ),
 /// kOutOfMemory.
 [[nodiscard]] VKMESH_API Result<std::vector<FileNote>> write_mesh(const std::filesystem::path& path,
                                                                   const IndexedFaceSet& mesh,

@@ -74,7 +74,6 @@ class GltfWriter {
       : mesh_(mesh), options_(options), notes_(notes) {}
 
   Result<void> write(Output& out) {
-    if (mesh_.points.empty()) return fail(ErrorCode::kUnsuitable, "glTF holds no mesh without points");
     choose();
     split();
     put_positions();
