@@ -71,6 +71,7 @@ void add_creases(CLI::App& app, Program& program) {
                    "OBJ file to write; - for standard output. Without it creases are only counted")
       ->type_name("");
   add_consolidate_options(*command, program.options);
+  add_keep_splits(*command, program.options);
   const auto options = std::make_shared<CreaseOptions>();
   const auto degrees = std::make_shared<Degrees>();
   command->add_option("--sharp", degrees->sharp, "Degrees from which an edge is a crease; default 40")

@@ -70,6 +70,7 @@ void add_curvature(CLI::App& app, Program& program) {
       "Example:\n  vkmesh curvature data/dragon/dragon_vrip.ply.gz curvature.ply --kind mean");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
+  add_keep_splits(*command, program.options);
   const auto options = std::make_shared<CurvatureOptions>();
   command->add_option("--kind", options->kind, "dihedral (default), mean or gaussian")
       ->type_name("KIND")

@@ -34,7 +34,7 @@ struct Line {
 struct Verdict {
   std::string pass;
   std::size_t meshes = 0, differing = 0;
-  std::string first;  ///< Of those that differ.
+  std::string first;  ///< The first of those that differ.
 };
 
 struct Input {

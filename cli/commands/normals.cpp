@@ -13,7 +13,7 @@ Result<void> run(Job& job, const VertexNormalsOptions& options) {
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(Backend backend, open_backend(job));
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
-  VKMESH_TRY(const HalfEdgeMesh half_edges, job.consolidate(mesh));
+  VKMESH_TRY(const HalfEdgeMesh half_edges, job.connect(mesh));
   // Kernels take triangles.
   VKMESH_TRY(const std::vector<Vec3> normals,
              half_edges.is_triangles()
@@ -27,6 +27,7 @@ Result<void> run(Job& job, const VertexNormalsOptions& options) {
     values.insert(values.end(), {n.x, n.y, n.z});
     undefined += n == Vec3(0.0f) ? 1u : 0u;
   }
+  std::erase_if(mesh.corner_channels, [](const Channel& channel) { return channel.name == "normal"; });
   set_channel(mesh.point_channels, {"normal", 3, std::move(values)});
   job.json()["result"] = {{"normals", normals.size()}, {"undefined", undefined}};
   job.row(
@@ -48,6 +49,7 @@ void add_normals(CLI::App& app, Program& program) {
       "Example:\n  vkmesh normals data/dragon/dragon_vrip.ply.gz normals.ply");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
+  add_keep_splits(*command, program.options);
   const auto options = std::make_shared<VertexNormalsOptions>();
   const std::map<std::string, NormalWeights> weights = {
       {"area", NormalWeights::kArea}, {"angle", NormalWeights::kAngle}, {"uniform", NormalWeights::kUniform}};

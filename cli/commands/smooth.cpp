@@ -148,6 +148,7 @@ void add_smooth(CLI::App& app, Program& program) {
       "0.2");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
+  add_keep_splits(*command, program.options);
   const auto options = std::make_shared<SmoothOptions>();
   command->add_option("--method", options->method, "taubin (default), laplacian or bilateral")
       ->type_name("METHOD")

@@ -282,14 +282,20 @@ Result<HalfEdgeMesh> Job::consolidate(IndexedFaceSet& mesh) {
       return tl::unexpected<Error>(std::move(result.error()));
     }
     json_["report"] = to_json(result->report);
+    if (!options_.consolidation.weld) split_channels_ = result->report.weld_seams;
     for (std::string& sentence : result->report.repairs()) row("repaired", std::move(sentence));
     mesh = std::move(result->face_set);
     return std::move(result->mesh);
   });
 }
 
+Result<HalfEdgeMesh> Job::connect(IndexedFaceSet& mesh) {
+  options_.consolidation.weld_boundary = !options_.keep_splits;
+  return consolidate(mesh);
+}
+
 Result<HalfEdgeMesh> Job::consolidate_triangles(IndexedFaceSet& mesh) {
-  VKMESH_TRY(HalfEdgeMesh half_edges, consolidate(mesh));
+  VKMESH_TRY(HalfEdgeMesh half_edges, connect(mesh));
   if (mesh.is_triangles()) return half_edges;
   return timed("consolidate", [&]() -> Result<HalfEdgeMesh> {
     VKMESH_TRY(Triangulated cut, triangulate(mesh));
@@ -306,6 +312,7 @@ Result<HalfEdgeMesh> Job::consolidate_again(IndexedFaceSet& triangles) {
   if (sound) return sound;
   ConsolidateOptions mending = options_.consolidation;
   mending.weld.reset();
+  mending.weld_boundary = false;
   auto result = vkmesh::consolidate(std::move(triangles), mending, progress("consolidating"));
   if (!result) {
     result.error().where.file = options_.input;
@@ -317,7 +324,25 @@ Result<HalfEdgeMesh> Job::consolidate_again(IndexedFaceSet& triangles) {
   return std::move(result->mesh);
 }
 
+std::vector<std::string> Job::names_to_split(const IndexedFaceSet& mesh) const {
+  const FileFormat format = write_options_.format;
+  if (format == FileFormat::kObj || format == FileFormat::kInventor || format == FileFormat::kVrml1 ||
+      format == FileFormat::kVrml2)
+    return {};  // they have attributes of corners
+  std::vector<std::string> names = split_channels_;
+  // So that what is reported of the output counts the vertices of its buffers.
+  if (format == FileFormat::kGltf) names.insert(names.end(), {"normal", "uv", "color"});
+  std::erase_if(names,
+                [&](const std::string& name) { return find_channel(mesh.corner_channels, name) == nullptr; });
+  return names;
+}
+
 Result<void> Job::write(const IndexedFaceSet& mesh, bool ascii) {
+  if (const std::vector<std::string> names = names_to_split(mesh); !names.empty()) {
+    split_channels_ = {};
+    VKMESH_TRY(const IndexedFaceSet split, timed("write", [&] { return split_at_seams(mesh, names); }));
+    return write(split, ascii);
+  }
   if (ascii) write_options_.encoding = FileEncoding::kAscii;
   write_options_.offset = offset_;
   write_options_.material_libraries = material_libraries_;
@@ -428,6 +453,15 @@ void add_consolidate_options(CLI::App& command, CommonOptions& options) {
   command.add_flag_callback(
       "--refuse-non-orientable", [&consolidation] { consolidation.cut_non_orientable = false; },
       "Refuse a surface like the Moebius strip, instead of cutting it open along a seam");
+}
+
+void add_keep_splits(CLI::App& command, CommonOptions& options) {
+  command
+      .add_flag("--keep-splits", options.keep_splits,
+                "Leave points apart that the file repeats at one place, as for texture coordinates.\n"
+                "Else they are one while the surface is worked on, and are repeated again in OUT\n"
+                "where attributes differ")
+      ->excludes(command.get_option("--weld"));
 }
 
 Result<std::pair<std::string, double>> named_weight(const std::string& option, const std::string& text,

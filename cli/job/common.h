@@ -38,6 +38,7 @@ struct CommonOptions {
   bool quiet = false;
   std::string on_loss = "note";
   ConsolidateOptions consolidation;
+  bool keep_splits = false;
 };
 
 /// After this, interrupt and termination signals make interrupted() true, and a closed pipe is an ordinary
@@ -110,8 +111,11 @@ class Job {
   /// Makes the mesh an oriented manifold, as the options of add_consolidate_options() say, and reports what
   /// was done. The half-edges are those of its faces.
   [[nodiscard]] Result<HalfEdgeMesh> consolidate(IndexedFaceSet& mesh);
+  /// The same for work on a connected surface: points that the file repeats along seams are made one first,
+  /// unless --keep-splits forbids it; write() repeats them again.
+  [[nodiscard]] Result<HalfEdgeMesh> connect(IndexedFaceSet& mesh);
   /// The same, with the half-edges of the triangles into which polygons are cut; `mesh` keeps its polygons,
-  /// unless their triangles need mending: then it becomes those.
+  /// unless their triangles need mending: then it becomes those. Begins as connect() does.
   [[nodiscard]] Result<HalfEdgeMesh> consolidate_triangles(IndexedFaceSet& mesh);
   /// Mends what cutting polygons left that is no oriented manifold; what was done is told beside the report.
   [[nodiscard]] Result<HalfEdgeMesh> consolidate_again(IndexedFaceSet& triangles);
@@ -144,11 +148,16 @@ class Job {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
 
+  /// Channels of corners for which the output has to repeat points.
+  [[nodiscard]] std::vector<std::string> names_to_split(const IndexedFaceSet& mesh) const;
+
   CommonOptions options_;
   Clock::time_point start_ = Clock::now();
   WriteOptions write_options_;
   DVec3 offset_{0.0};
   std::vector<std::string> material_libraries_;
+  std::vector<std::string>
+      split_channels_;     ///< Belong to points in the file, to corners while it is worked on.
   bool has_read_ = false;  ///< The offset is settled.
   std::vector<std::pair<std::string, std::string>> rows_;
   std::vector<std::string> notes_;
@@ -161,6 +170,9 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_inpu
 
 /// Adds --weld, --strict and the like, for subcommands that consolidate what they read.
 void add_consolidate_options(CLI::App& command, CommonOptions& options);
+
+/// Adds --keep-splits, for subcommands that work on a connected surface.
+void add_keep_splits(CLI::App& command, CommonOptions& options);
 
 /// Finds out whether a file can be written there at all. "-" can. Errors: kNotWritable.
 [[nodiscard]] Result<void> check_place(const std::string& file);

@@ -319,6 +319,7 @@ void add_simplify(CLI::App& app, Program& program) {
       "half-edge-collapse --index-only");
   add_common_options(*command, program.options, true, true);
   add_consolidate_options(*command, program.options);
+  add_keep_splits(*command, program.options);
   const auto options = std::make_shared<SimplifyOptions>();
   const auto criteria = std::make_shared<SimplifyCriteria>();
   command

@@ -14,6 +14,7 @@
 #include "mesh/edge_matching.h"
 #include "mesh/edge_records.h"
 #include "repair/repair.h"
+#include "repair/weld_boundary.h"
 
 namespace vkmesh {
 namespace {
@@ -141,9 +142,17 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     VKMESH_CHECK(tick(0.05));
   }
   VKMESH_TRY(detail::Matching matching, match(mesh));
+  if (options.weld_boundary && !options.weld && matching.defects.boundary_edges > 0) {
+    VKMESH_TRY(welded, detail::weld_boundary(mesh, matching.twin));
+    if (welded.merged_points > 0) {
+      mesh = std::move(welded.mesh);
+      matching = {};  // before the next takes memory
+      VKMESH_TRY(matching, match(mesh));
+    }
+  }
   VKMESH_CHECK(tick(0.1));
   ConsolidateReport& report = result.report = report_of(std::move(matching.defects));
-  if (options.weld) {
+  if (welded.merged_points > 0) {
     report.welded_points = welded.merged_points;
     report.largest_weld_move = welded.largest_move;
     report.weld_seams = std::move(welded.seams);
@@ -176,8 +185,7 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
       VKMESH_TRY(matching, match(result.face_set));
     }
   }
-  if (options.weld && report.welded_points > 0)
-    name_before_welding(result.source_point, welded.point_of, report.points);
+  if (report.welded_points > 0) name_before_welding(result.source_point, welded.point_of, report.points);
   result.mesh = HalfEdgeMesh::from_arrays(result.face_set.corners, std::move(matching.twin),
                                           std::move(matching.leading), result.face_set.face_offsets);
   VKMESH_CHECK(tick(1));

@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/distinct_rows.h"
+#include "repair/weld_boundary.h"
 
 namespace vkmesh {
 namespace {
@@ -145,9 +148,38 @@ bool agrees(const Channel& channel, std::span<const std::uint32_t> point_of,
       channel.values);
 }
 
-Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& options) {
-  if (!(options.tolerance.value >= 0) || !std::isfinite(options.tolerance.value))
-    return fail(ErrorCode::kUsage, "the tolerance of welding must be a finite number that is not negative");
+/// Which points an edge without a partner uses.
+std::vector<bool> on_boundary(const IndexedFaceSet& mesh, std::span<const std::uint32_t> twin) {
+  std::vector<bool> found(mesh.points.size());
+  for (std::size_t f = 0, h = 0; f < mesh.face_count(); ++f) {
+    const std::span<const std::uint32_t> face = mesh.face(f);
+    for (std::size_t k = 0; k < face.size(); ++k, ++h)
+      if (twin[h] == kInvalid) found[face[k]] = found[face[k + 1 == face.size() ? 0 : k + 1]] = true;
+  }
+  return found;
+}
+
+/// Gives points at equal places one number; `apart(p)` says that a point keeps one of its own.
+template <class Apart>
+std::vector<std::uint32_t> number_places(std::span<const Vec3> points, std::vector<Vec3>& distinct,
+                                         Apart&& apart) {
+  std::vector<std::uint32_t> point_of(points.size()), number_of_row;
+  std::vector<Vec3> rows;
+  detail::DistinctRows<3> places;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto next = static_cast<std::uint32_t>(distinct.size());
+    point_of[p] = next;
+    if (!apart(p)) {
+      const std::uint32_t row = places.number(&points[p][0], rows);
+      if (row == number_of_row.size()) number_of_row.push_back(next);
+      point_of[p] = number_of_row[row];
+    }
+    if (point_of[p] == next) distinct.push_back(points[p]);
+  }
+  return point_of;
+}
+
+Result<void> check_points(const IndexedFaceSet& mesh) {
   if (mesh.points.size() >= kInvalid)
     return fail(ErrorCode::kUnsuitable, "the mesh has more than 2^32 - 2 points");
   for (const std::uint32_t c : mesh.corners)
@@ -157,29 +189,15 @@ Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& option
   for (const Vec3& p : mesh.points)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorCode::kUsage, "a point has a coordinate that is not finite");
-  const double tolerance = options.tolerance.in_units(bounds_of(mesh.points).diagonal());
+  return {};
+}
 
+/// Makes the points of `distinct` those of the mesh, and channels in which points differ those of corners.
+Welded merge(const IndexedFaceSet& mesh, std::vector<std::uint32_t> point_of, std::vector<Vec3> distinct) {
   Welded result;
-  result.point_of.resize(mesh.points.size());
-  std::vector<Vec3> distinct;
-  {
-    detail::DistinctRows<3> rows;
-    for (std::size_t p = 0; p < mesh.points.size(); ++p)
-      result.point_of[p] = rows.number(&mesh.points[p][0], distinct);
-  }
-  if (tolerance > 0 && !distinct.empty()) {
-    const std::vector<Vec3> moved = move_together(distinct, tolerance, result.largest_move);
-    detail::DistinctRows<3> rows;
-    std::vector<std::uint32_t> number(distinct.size());
-    distinct.clear();
-    for (std::size_t p = 0; p < moved.size(); ++p) number[p] = rows.number(&moved[p][0], distinct);
-    for (std::uint32_t& p : result.point_of) p = number[p];
-  }
+  result.point_of = std::move(point_of);
   result.merged_points = mesh.points.size() - distinct.size();
-  if (result.merged_points == 0) {
-    result.mesh = mesh;
-    return result;
-  }
+  if (result.merged_points == 0) return result;
 
   std::vector<std::uint32_t> first(distinct.size(), kInvalid);
   for (std::uint32_t p = 0; p < result.point_of.size(); ++p)
@@ -204,7 +222,141 @@ Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& option
   return result;
 }
 
+Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& options) {
+  if (!(options.tolerance.value >= 0) || !std::isfinite(options.tolerance.value))
+    return fail(ErrorCode::kUsage, "the tolerance of welding must be a finite number that is not negative");
+  VKMESH_CHECK(check_points(mesh));
+  const double tolerance = options.tolerance.in_units(bounds_of(mesh.points).diagonal());
+  const auto none = [](std::size_t) { return false; };
+  std::vector<Vec3> distinct;
+  std::vector<std::uint32_t> point_of = number_places(mesh.points, distinct, none);
+  double largest_move = 0;
+  if (tolerance > 0 && !distinct.empty()) {
+    const std::vector<Vec3> moved = move_together(distinct, tolerance, largest_move);
+    distinct.clear();
+    const std::vector<std::uint32_t> number = number_places(moved, distinct, none);
+    for (std::uint32_t& p : point_of) p = number[p];
+  }
+  Welded result = merge(mesh, std::move(point_of), std::move(distinct));
+  result.largest_move = largest_move;
+  if (result.merged_points == 0) result.mesh = mesh;
+  return result;
+}
+
+/// Corners by their point and the bytes of their values: those that are one copy of the point are equal.
+class CornerCopies {
+ public:
+  CornerCopies(std::span<const std::uint32_t> corners, std::span<const Channel> channels)
+      : corners_(corners) {
+    for (const Channel& channel : channels)
+      std::visit(
+          [&](const auto& values) {
+            columns_.push_back({reinterpret_cast<const unsigned char*>(values.data()),
+                                channel.components * sizeof(values[0])});
+          },
+          channel.values);
+  }
+
+  [[nodiscard]] std::size_t operator()(std::uint32_t corner) const {
+    std::uint64_t hash = corners_[corner];
+    for (const Column& column : columns_)
+      for (std::size_t i = 0; i < column.bytes; ++i)
+        hash = (hash ^ column.values[corner * column.bytes + i]) * 0x100000001b3u;
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+  }
+  [[nodiscard]] bool operator()(std::uint32_t a, std::uint32_t b) const {
+    return corners_[a] == corners_[b] && std::ranges::all_of(columns_, [&](const Column& column) {
+             return std::memcmp(column.values + a * column.bytes, column.values + b * column.bytes,
+                                column.bytes) == 0;
+           });
+  }
+
+ private:
+  struct Column {
+    const unsigned char* values;
+    std::size_t bytes;  // of one corner
+  };
+  std::span<const std::uint32_t> corners_;
+  std::vector<Column> columns_;
+};
+
+/// The values of the first corner of each copy; 0 where it has none.
+Channel of_copies(const Channel& channel, std::span<const std::uint32_t> corner_of_copy) {
+  return std::visit(
+      [&](const auto& values) -> Channel {
+        std::remove_cvref_t<decltype(values)> made(corner_of_copy.size() * channel.components);
+        for (std::size_t copy = 0; copy < corner_of_copy.size(); ++copy)
+          if (corner_of_copy[copy] != kInvalid)
+            std::copy_n(&values[std::size_t{corner_of_copy[copy]} * channel.components], channel.components,
+                        &made[copy * channel.components]);
+        return {channel.name, channel.components, std::move(made), channel.labels};
+      },
+      channel.values);
+}
+
+Result<IndexedFaceSet> split(IndexedFaceSet mesh, std::span<const std::string> names) {
+  const std::size_t corners = mesh.corners.size(), points = mesh.points.size();
+  if (corners >= kInvalid) return fail(ErrorCode::kUnsuitable, "the mesh has more than 2^32 - 2 corners");
+  for (const std::uint32_t c : mesh.corners)
+    if (c >= points)
+      return fail(ErrorCode::kUsage, "a face names point " + std::to_string(c) + ", but there are " +
+                                         std::to_string(points) + " points");
+  std::vector<Channel> moved;
+  for (const std::string& name : names)
+    if (const auto it = std::ranges::find(mesh.corner_channels, name, &Channel::name);
+        it != mesh.corner_channels.end()) {
+      moved.push_back(std::move(*it));
+      mesh.corner_channels.erase(it);
+    }
+  if (moved.empty()) return mesh;
+
+  // The first corner of each copy stands for it; copies count up within their point.
+  const CornerCopies equal(mesh.corners, moved);
+  std::unordered_set<std::uint32_t, CornerCopies, CornerCopies> firsts(points, equal, equal);
+  std::vector<std::uint32_t> first_of(corners), copy_of(corners), begin(points + 1);
+  for (std::uint32_t c = 0; c < corners; ++c) {
+    const auto [it, is_new] = firsts.insert(c);
+    first_of[c] = *it;
+    copy_of[c] = is_new ? begin[mesh.corners[c] + 1]++ : copy_of[*it];
+  }
+  std::uint64_t copies = 0;
+  for (std::size_t p = 0; p < points; ++p) {
+    const std::uint32_t here = std::max(begin[p + 1], 1u);  // a point of no face stays
+    copies += here;
+    if (copies >= kInvalid) return fail(ErrorCode::kUnsuitable, "the mesh has more than 2^32 - 2 points");
+    begin[p + 1] = static_cast<std::uint32_t>(copies);
+  }
+  std::vector<std::uint32_t> point_of_copy(begin.back()), corner_of_copy(begin.back(), kInvalid);
+  for (std::uint32_t p = 0; p < points; ++p)
+    std::fill(point_of_copy.begin() + begin[p], point_of_copy.begin() + begin[p + 1], p);
+  for (std::uint32_t c = 0; c < corners; ++c) {
+    const std::uint32_t copy = begin[mesh.corners[c]] + copy_of[c];
+    corner_of_copy[copy] = first_of[c];
+    copy_of[c] = copy;
+  }
+  std::vector<Vec3> positions;
+  positions.reserve(point_of_copy.size());
+  for (const std::uint32_t p : point_of_copy) positions.push_back(mesh.points[p]);
+  mesh.points = std::move(positions);
+  mesh.point_channels = gather(mesh.point_channels, point_of_copy);
+  for (const Channel& channel : moved) set_channel(mesh.point_channels, of_copies(channel, corner_of_copy));
+  mesh.corners = std::move(copy_of);
+  return mesh;
+}
+
 }  // namespace
+
+Result<Welded> detail::weld_boundary(const IndexedFaceSet& mesh, std::span<const std::uint32_t> twin) {
+  return catching([&]() -> Result<Welded> {
+    VKMESH_CHECK(check_points(mesh));
+    std::vector<bool> joins;
+    if (twin.size() == mesh.corners.size()) joins = on_boundary(mesh, twin);
+    std::vector<Vec3> distinct;
+    std::vector<std::uint32_t> point_of =
+        number_places(mesh.points, distinct, [&](std::size_t p) { return !joins.empty() && !joins[p]; });
+    return merge(mesh, std::move(point_of), std::move(distinct));
+  });
+}
 
 Result<Welded> weld(const IndexedFaceSet& mesh, const WeldOptions& options) {
   return detail::catching([&] { return weld_points(mesh, options); });
@@ -226,6 +378,10 @@ Result<IndexedFaceSet> weld(const PolygonSoup& soup) {
     mesh.normalize_offsets();
     return mesh;
   });
+}
+
+Result<IndexedFaceSet> split_at_seams(IndexedFaceSet mesh, std::span<const std::string> names) {
+  return detail::catching([&] { return split(std::move(mesh), names); });
 }
 
 Result<PolygonSoup> to_polygon_soup(const IndexedFaceSet& mesh) {

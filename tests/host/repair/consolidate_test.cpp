@@ -170,4 +170,62 @@ TEST_CASE("consolidation can be cancelled at any report, of input that needs no 
         CHECK(result.error().code == ErrorCode::kInterrupted);
       }
     }
+namespace {
+
+/// The faces of a torus over points that are repeated along two of its circles, with a value for each copy.
+IndexedFaceSet split_torus() {
+  IndexedFaceSet mesh = test::torus(12, 9);
+  std::vector<float> u(mesh.corners.size());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    for (std::size_t c = 3 * f; c < 3 * f + 3; ++c) u[c] = f / 2 % 9 < 4 ? 0.0f : 1.0f;
+  mesh.corner_channels = {{"u", 1, u}};
+  const std::vector<std::string> names = {"u"};
+  return split_at_seams(mesh, names).value();
+}
+
+}  // namespace
+
+TEST_CASE("weld_boundary closes seams, and leaves alone what is closed") {
+  const IndexedFaceSet split = split_torus();
+  REQUIRE(report_of(split).boundary_edges > 0);
+  const std::size_t copies = split.points.size() - 12 * 9;
+
+  const auto open = consolidate(split);
+  REQUIRE(open);
+  CHECK(open->report.boundary_edges > 0);
+  CHECK(open->report.welded_points == 0);
+
+  const auto closed = consolidate(split, {.weld_boundary = true});
+  REQUIRE(closed);
+  CHECK(closed->report.boundary_edges == 0);
+  CHECK(closed->report.welded_points == copies);
+  CHECK(closed->report.weld_seams == std::vector<std::string>{"u"});
+  CHECK(closed->face_set.points.size() == 12 * 9);
+  REQUIRE(closed->source_point.size() == 12 * 9);
+  for (std::size_t p = 0; p < closed->source_point.size(); ++p)
+    REQUIRE(closed->face_set.points[p] == split.points[closed->source_point[p]]);
+
+  // Also where a degenerate face stands between the others.
+  IndexedFaceSet with_needle = split;
+  with_needle.corners.insert(with_needle.corners.begin() + 30, {0, 0, 1});
+  for (Channel& channel : with_needle.point_channels) REQUIRE(channel.scalar_count() == split.points.size());
+  const auto mended = consolidate(with_needle, {.weld_boundary = true});
+  REQUIRE(mended);
+  CHECK(mended->report.removed_degenerate_faces == 1);
+  CHECK(mended->mesh.half_edge_count() == split.corners.size());
+  CHECK(std::ranges::count(mended->mesh.twins(), kInvalid) == 0);
+
+  // Two cubes that stand on one corner, and a sheet beside whose points lie on theirs.
+  IndexedFaceSet cubes = test::both(test::cube(), test::cube(), {1, 1, 1});
+  const std::size_t points = cubes.points.size();
+  const auto apart = consolidate(cubes, {.weld_boundary = true});
+  REQUIRE(apart);
+  CHECK(apart->report.manifold());
+  CHECK(apart->report.welded_points == 0);
+  cubes.points.insert(cubes.points.end(), {{1, 1, 1}, {2, 1, 1}, {2, 2, 1}});
+  for (const std::uint32_t p : {0u, 1u, 2u}) cubes.corners.push_back(static_cast<std::uint32_t>(points) + p);
+  const auto beside = consolidate(cubes, {.weld_boundary = true});
+  REQUIRE(beside);
+  CHECK(beside->report.welded_points == 0);
+  CHECK(consolidate(cubes, {.weld = WeldOptions{}})->report.welded_points > 0);
 }

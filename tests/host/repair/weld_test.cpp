@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <random>
 #include <string>
 #include <tuple>
@@ -181,6 +182,63 @@ TEST_CASE("attributes: equal values stay with points, different ones become seam
   REQUIRE(result.mesh.corner_channels.size() == 2);
   CHECK(result.mesh.corner_channels[0].values == mesh.corner_channels[0].values);
   CHECK(result.mesh.corner_channels[1].values == mesh.point_channels[1].values);
+}
+
+TEST_CASE("splitting at seams gives each point one copy for each row of values", "[weld]") {
+  std::mt19937 random(5);
+  IndexedFaceSet mesh = test::torus(12, 9);
+  mesh.points.push_back({7, 7, 7});  // of no face
+  std::vector<float> uv;
+  std::vector<std::uint8_t> side;
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
+    uv.insert(uv.end(), {static_cast<float>(random() % 2), 0.5f});
+    side.push_back(static_cast<std::uint8_t>(random() % 2));
+  }
+  std::vector<float> number(mesh.points.size());
+  std::iota(number.begin(), number.end(), 0.0f);
+  mesh.point_channels = {{"number", 1, number}};
+  mesh.corner_channels = {{"uv", 2, uv}, {"kept", 1, side}, {"side", 1, side}};
+  const std::vector<std::string> names = {"uv", "side", "missing"};
+  const auto split = split_at_seams(mesh, names);
+  REQUIRE(split);
+
+  CHECK(split->corner_channels.size() == 1);
+  REQUIRE(split->point_channels.size() == 3);
+  const auto& split_number = std::get<std::vector<float>>(split->point_channels[0].values);
+  const auto& split_uv = std::get<std::vector<float>>(split->point_channels[1].values);
+  const auto& split_side = std::get<std::vector<std::uint8_t>>(split->point_channels[2].values);
+  CHECK(std::ranges::is_sorted(split_number));
+  CHECK(split_number.back() == number.back());
+  std::map<std::tuple<float, float, int>, std::uint32_t> copies;
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
+    const std::uint32_t copy = split->corners[c];
+    REQUIRE(split->points[copy] == mesh.points[mesh.corners[c]]);
+    REQUIRE(split_number[copy] == number[mesh.corners[c]]);
+    REQUIRE(split_uv[2 * copy] == uv[2 * c]);
+    REQUIRE(split_side[copy] == side[c]);
+    REQUIRE(copies.try_emplace({number[mesh.corners[c]], uv[2 * c], side[c]}, copy).first->second == copy);
+  }
+  CHECK(copies.size() + 1 == split->points.size());
+
+  // The way back.
+  const Welded again = welded(*split);
+  CHECK(again.mesh.points.size() == mesh.points.size());
+  CHECK(again.seams == std::vector<std::string>{"uv", "side"});
+  CHECK(find_channel(again.mesh.corner_channels, "uv")->values == mesh.corner_channels[0].values);
+  CHECK(find_channel(again.mesh.corner_channels, "side")->values == mesh.corner_channels[2].values);
+}
+
+TEST_CASE("without seams, splitting changes nothing; corners that name no point are an error", "[weld]") {
+  IndexedFaceSet mesh = test::cube();
+  mesh.corner_channels = {{"uv", 1, std::vector<float>(36)}};
+  const std::vector<std::string> names = {"uv"};
+  const auto split = split_at_seams(mesh, names);
+  REQUIRE(split);
+  CHECK(split->points == mesh.points);
+  CHECK(split->corners == mesh.corners);
+  CHECK(split->point_channels[0].scalar_count() == 8);
+  mesh.corners[0] = 8;
+  CHECK(split_at_seams(mesh, names).error().code == ErrorCode::kUsage);
 }
 
 TEST_CASE("what cannot be welded is a usage error", "[weld]") {

@@ -19,7 +19,11 @@ namespace vkmesh {
 
 struct ConsolidateOptions {
   /// Points within the tolerance are made one before anything is judged. Default: none are.
-  std::optional<WeldOptions> weld;
+  std::optional<WeldOptions> weld = {};
+  /// Points at equal places are made one where the edges that use them have no partner: files repeat points
+  /// for texture coordinates, normals and materials, which leaves the surface open along every seam. What is
+  /// closed is not touched. Default: they stay apart.
+  bool weld_boundary = false;
   /// Refuse a mesh that is no oriented manifold, instead of repairing it. Default: repair.
   bool strict = false;
   /// Points that no face uses stay (default), or go.
@@ -83,13 +87,14 @@ struct Consolidated {
 };
 
 /// Makes a mesh an oriented manifold and builds its half-edges, in this order:
-/// 1. points are welded, if asked for;
+/// 1. points are welded, if asked for, all or those of the boundary;
 /// 2. a point repeated in a row is left out of its polygon; polygons that still repeat a point are cut into
 ///    triangles (see `triangulate`); faces without three distinct points are removed, and faces that have
 ///    the points of an earlier one in the same order. The reverse of an earlier face is removed unless each
 ///    of its edges has as many faces one way as the other, as the wall between two solids has;
 /// 3. faces that share an edge of two faces are flipped to agree, as the larger part of each such sheet lies;
-///    where a sheet is not orientable it is cut along the edges that still disagree;
+///    where a sheet is not orientable it is cut along the edges that still disagree. Sheets are flipped,
+///    small ones first, where edges of four, six, … faces then have more of them opposite ways;
 /// 4. edges of three or more faces are split: where as many faces run one way as the other, into the pairs
 ///    between which the thinnest wedges of solid lie, as where two solids touch along an edge; else into the
 ///    flattest pairs of opposite direction, the rest becoming boundary;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,14 @@ struct Welded {
 /// appearance; faces and their channels keep their order. O(n) expected for n corners (a hash table).
 /// Errors: kOutOfMemory; kUnsuitable for more than 2^32 - 2 corners.
 [[nodiscard]] VKMESH_API Result<IndexedFaceSet> weld(const PolygonSoup& soup);
+
+/// Gives each point a copy for each different combination of values that its corners have in the corner
+/// channels of these names, which become point channels: what weld() made of points that differed is made
+/// undone, for files and vertex buffers whose attributes belong to points. The copies of a point follow each
+/// other, in order of first appearance; equal means equal bytes. A name that no corner channel has is passed
+/// over; points that no face uses have the value 0. O(n) expected for n corners. Errors: kUsage for corners
+/// that name no point; kUnsuitable for more than 2^32 - 2 copies; kOutOfMemory.
+[[nodiscard]] Result<IndexedFaceSet> split_at_seams(IndexedFaceSet mesh, std::span<const std::string> names);
 
 /// The faces with corners of their own: the way back, after which weld() gives the same faces over the points
 /// that they use. Channels of faces follow; a soup has no place for those of points and corners. O(n) for n
