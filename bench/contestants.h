@@ -37,7 +37,7 @@ struct Surface {
 /// One comparison of decimations.
 struct DecimationCase {
   std::string step;
-  const IndexedFaceSet& mesh;  ///< Of the input.
+  const IndexedFaceSet& mesh;  ///< The input.
   bool shuffled = false;
   std::size_t target = 0;  ///< Faces.
 };

@@ -127,7 +127,7 @@ Result<Report> measure(const Options& options, const Input& input, const Program
         std::fprintf(stderr, "\r\033[K%s, %s: %zu", step.c_str(), contestant.name.c_str(), round + 1);
         const MemoryWatch memory;
         VKMESH_TRY(const double milliseconds, contestant.run());
-        // Of the first run: later ones begin with the result of the one before.
+        // Taken from the first run: later ones begin with the result of the one before.
         if (contestant.surface && round == 0) report.rows[i].memory = memory.peak();
         report.rows[i].milliseconds.push_back(milliseconds);
       }

@@ -18,7 +18,7 @@ struct DecimationQuality {
   std::size_t faces = 0;
   /// Two-sided distance from the original, as fractions of the diagonal of its bounding box.
   double mean = 0, maximum = 0;
-  std::size_t non_manifold_edges = 0;  ///< Of more than two faces, or of two that run the same way.
+  std::size_t non_manifold_edges = 0;  ///< With more than two faces, or two that run the same way.
   std::size_t non_manifold_vertices = 0;
 };
 
@@ -28,7 +28,7 @@ struct Row {
   std::vector<double> milliseconds;   ///< One for each repetition.
   std::optional<std::size_t> memory;  ///< Bytes allocated at most at once, the result among them.
   std::optional<DecimationQuality> quality;
-  std::size_t bytes = 0;  ///< Of the file that is read; 0 where none is.
+  std::size_t bytes = 0;  ///< Size of the file that is read; 0 where none is.
 
   [[nodiscard]] double median() const;
   /// 10^6 bytes a second; unset where no file is read.

@@ -60,7 +60,7 @@ layout(set = 0, binding = 0, std140) uniform DrawView {
 #else
 struct DrawView {
 #endif
-  // Of vectors, xyz alone count. Colours are linear, as light adds up, unless said otherwise.
+  // Vectors count by their xyz alone. Colours are linear, as light adds up, unless said otherwise.
   VKMESH_MAT4(clip_from_origin);  ///< Column by column; of positions relative to `origin`.
   VKMESH_VEC4(origin);
   VKMESH_VEC4(eye);      ///< relative to `origin`

@@ -14,7 +14,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 struct Case {
-  std::string name;  ///< Of the file; its extension matters.
+  std::string name;  ///< The file's; its extension matters.
   std::string content;
   int code;
   std::string place;  ///< What follows the file's name in the sentence: ":3:", ": byte ", or "".

@@ -29,7 +29,7 @@ void check_rows(const std::string& device, std::size_t count) {
     CHECK(row.at("median_ms") > 0.0);
     CHECK(row.at("bytes") > 0);
     CHECK(row.at("times_copy") > 0.0);
-    // Of n vertices and 2n faces a split makes 4n and 8n.
+    // A split makes 4n vertices and 8n faces of n and 2n.
     if (row.at("triangles") == 192) {
       CHECK(row.at("vertices") == 96);
       CHECK(passes.insert(row.at("pass")).second);

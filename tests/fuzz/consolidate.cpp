@@ -47,7 +47,7 @@ ConsolidateReport slow_survey(const IndexedFaceSet& mesh) {
   report.faces = mesh.face_count();
   const std::set<std::uint32_t> used(mesh.corners.begin(), mesh.corners.end());
   report.isolated_points = report.points - used.size();
-  std::map<Edge, std::vector<bool>> edges;  // Of each: for each face on it whether it runs upwards.
+  std::map<Edge, std::vector<bool>> edges;  // For each face on an edge: whether it runs upwards.
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto corners = mesh.face(f);
     const std::set<std::uint32_t> distinct(corners.begin(), corners.end());

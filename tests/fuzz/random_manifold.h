@@ -70,7 +70,7 @@ class RandomManifold {
     const auto first = static_cast<std::uint32_t>(points_.size());
     const double away = 3.0 * static_cast<double>(faces_.size() > 0);
     const auto circle = [](std::uint32_t i, std::uint32_t of) {
-      // Of corners of a square, for whole numbers that are often in one line.
+      // Among corners of a square, for whole numbers that are often in one line.
       constexpr std::array<std::array<double, 2>, 8> kPlaces = {
           {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
       return kPlaces[i * 8 / of];

@@ -31,7 +31,7 @@ constexpr VkAccessFlags kDrawReads =
 struct VKMESH_LOCAL Recorder::State {
   enum class Phase { kRecording, kRunning, kDone, kFailed };
 
-  Context context;  // Of the same device as the caller's, which may go.
+  Context context;  // On the same device as the caller's, which may go.
   VkCommandBuffer commands = VK_NULL_HANDLE;
   bool borrowed = false;
   bool drew = false;  // Only then may barriers name the stages of drawing, which not every queue has.

@@ -15,7 +15,7 @@ namespace vkmesh::detail {
 struct SpirvInstruction {
   std::uint16_t opcode = 0;
   std::span<const std::uint32_t> words;
-  std::size_t offset = 0;  ///< Of the first word, in the module.
+  std::size_t offset = 0;  ///< Where its first word stands in the module.
 };
 
 /// The instructions of a module in order. Errors: kUsage for what is no SPIR-V.

@@ -28,7 +28,7 @@ namespace vkmesh::detail {
   X(vkGetPhysicalDeviceProperties2)      \
   X(vkGetPhysicalDeviceQueueFamilyProperties)
 
-// Of volk's table, what a device must have.
+// What a device must have, as members of volk's table.
 #define VKMESH_DEVICE_FUNCTIONS(X)  \
   X(vkAllocateCommandBuffers)       \
   X(vkAllocateDescriptorSets)       \

@@ -47,7 +47,7 @@ class DrawPipelines {
   /// Attachments: colour and depth of kSamples, and the resolved colour, which it leaves ready to copy from.
   [[nodiscard]] VkRenderPass render_pass() const { return render_pass_; }
   [[nodiscard]] VkFormat depth_format() const { return depth_format_; }
-  /// Of set 0: a kernels::DrawView.
+  /// Binds set 0, a kernels::DrawView.
   [[nodiscard]] VkDescriptorSetLayout set_layout() const { return set_layout_; }
   /// Push constants are a kernels::DrawParams for the vertex and fragment stages.
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }

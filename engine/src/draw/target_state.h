@@ -18,7 +18,7 @@ struct VKMESH_LOCAL RenderTarget::State {
 
   [[nodiscard]] Result<void> make_view(VkDescriptorSetLayout layout);
 
-  Context context;  ///< Of the same device as the caller's, which may go.
+  Context context;  ///< On the same device as the caller's, which may go.
   std::uint32_t width = 0, height = 0;
   detail::Image samples;  ///< Colour, before it is resolved.
   detail::Image depth;
@@ -26,7 +26,7 @@ struct VKMESH_LOCAL RenderTarget::State {
   VkFramebuffer framebuffer = VK_NULL_HANDLE;
   Buffer view;  ///< A kernels::DrawView.
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  VkDescriptorSet set = VK_NULL_HANDLE;  ///< Of DrawPipelines::set_layout(): `view`.
+  VkDescriptorSet set = VK_NULL_HANDLE;  ///< Laid out by DrawPipelines::set_layout(): `view`.
   Buffer pixels;                         ///< Four bytes a pixel, for the host.
 };
 

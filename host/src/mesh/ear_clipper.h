@@ -69,7 +69,7 @@ class BlockTree {
   static constexpr std::size_t kLeaf = 8;
   struct Node {
     Point2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    std::uint32_t first = 0, last = 0;  ///< Of a leaf: its points in order_.
+    std::uint32_t first = 0, last = 0;  ///< A leaf's points in order_.
     std::int32_t count = 0;             ///< Corners that block below it.
   };
 
@@ -288,7 +288,7 @@ class EarClipper {
   std::vector<std::uint32_t> next_, previous_;
   std::vector<char> blocks_;  ///< Corners that are not convex: only they can lie inside an ear.
   std::vector<char> proper_;  ///< Corners that are proper ears.
-  BlockTree tree_;            ///< Of those that block, in large polygons.
+  BlockTree tree_;            ///< The corners that block, in large polygons.
   bool uses_tree_ = false;
 };
 

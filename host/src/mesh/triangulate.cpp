@@ -171,7 +171,7 @@ class Triangulation {
   const IndexedFaceSet& mesh_;
   Triangulated result_;
   std::vector<std::size_t> first_;     ///< Triangle of each face, and their number.
-  std::vector<std::uint32_t> places_;  ///< Of the corners of the triangles, in their faces.
+  std::vector<std::uint32_t> places_;  ///< Where the corners of the triangles stand in their faces.
   detail::EarClipper clipper_;
 };
 

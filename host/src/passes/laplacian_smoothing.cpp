@@ -24,7 +24,7 @@ float step_towards(float here, float sum, float reciprocal_weight, float factor)
   return zero_below(here + move, VKMESH_TINY_COORDINATE);
 }
 
-// Of all coordinates of some vertices.
+// Moves all coordinates of some vertices.
 VKMESH_CLONES void steps_towards(const float* here, const float* sums, float reciprocal_weight, float factor,
                                  std::size_t count, float* out) {
   for (std::size_t i = 0; i < count; ++i) out[i] = step_towards(here[i], sums[i], reciprocal_weight, factor);

@@ -8,7 +8,7 @@
 
 namespace vkmesh::detail {
 
-/// Of triangles and checked positions, as many as there are faces.
+/// One for each triangle, from checked positions.
 void raw_triangle_normals(const HalfEdgeMesh& mesh, std::span<const Vec3> positions, std::span<Vec3> normals);
 
 }  // namespace vkmesh::detail

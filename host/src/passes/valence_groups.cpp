@@ -27,7 +27,7 @@ struct Reaches {
     for (std::size_t k = 0; k < count.size(); ++k) count[k] += other.count[k];
     return *this;
   }
-  // Of all vertices but one in fifty.
+  // The reach that serves all vertices but one in fifty.
   [[nodiscard]] std::size_t of_nearly_all() const {
     std::size_t all = 0, left = 0, k = count.size();
     for (const std::size_t n : count) all += n;

@@ -205,7 +205,7 @@ TEST_CASE(
       for (const double threshold : {5.0, 20.0, 40.0, 70.0})
         REQUIRE(std::fabs(angles.back() / kDegree - threshold) > 0.001);
     }
-    const auto edges_from = [&](double least) {  // Of those that the sharp ones are joined to.
+    const auto edges_from = [&](double least) {  // Counts those that the sharp ones are joined to.
       return static_cast<std::size_t>(
           std::find_if(angles.begin(), angles.end(), [&](double a) { return a < least * kDegree; }) -
           angles.begin());

@@ -38,7 +38,7 @@ CollapseMesh mesh_of(IndexedFaceSet set, std::uint32_t seed) {
   return mesh;
 }
 
-/// Of both quadrics, at q.
+/// The sum of both quadrics at q.
 double cost_of(const VertexRecord& p, const VertexRecord& q) {
   std::array<double, 3> x;
   for (std::size_t k = 0; k < 3; ++k)
@@ -320,7 +320,7 @@ TEST_CASE("ranges are coarsened side by side as one after another", "[decimate]"
 TEST_CASE("decimation: what is far from its target is coarsened at first, on any number of threads alike",
           "[decimate]") {
   const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
-  // Of the grid six rows are a range.
+  // Six rows of the grid are a range.
   IndexedFaceSet mesh = test::both(test::icosphere(4), test::grid(40, 50));
   test::jitter(mesh, 0.05f, 1);
   for (const DecimateOptions& way : test::ways()) {

@@ -166,7 +166,7 @@ TEST_CASE("decimation: aspect ratio, length of edges and valence are bounded", "
     REQUIRE(by.bounds.edge_length->value > before.longest_edge);
     CHECK(Measures(even).longest_edge <= by.bounds.edge_length->value * (1 + 1e-5));
 
-    // Of six edges at each vertex no collapse makes fewer than eight.
+    // Where each vertex has six edges no collapse makes fewer than eight.
     const IndexedFaceSet bumpy = bumpy_torus();
     options.target.ratio = 0.06;
     REQUIRE(Measures(run(bumpy, options)).most_edges > 8);

@@ -30,7 +30,7 @@ double distance(const DVec3& p, const Faces& faces) {
   return std::sqrt(least2);
 }
 
-/// Of points on a face in a grid.
+/// The largest over points on a face in a grid.
 double farthest(const LocalChange::Face& face, const Faces& faces) {
   constexpr int kSteps = 40;
   double most = 0;

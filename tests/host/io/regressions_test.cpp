@@ -53,7 +53,7 @@ const std::map<std::string, std::string> kRefusals = {
 /// What a file must give.
 struct Expected {
   std::size_t points, faces;
-  std::vector<std::string> codes;  ///< Of its notes.
+  std::vector<std::string> codes;  ///< Those of its notes.
 };
 const std::map<std::string, Expected> kMeshes = {
     {"gltf-data-without-a-type.gltf", {3, 1, {}}},

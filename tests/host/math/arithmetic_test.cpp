@@ -83,7 +83,7 @@ double worst_cube_root(float low, float high, std::uint32_t stride) {
   return worst;
 }
 
-// Of the arctangent of y, as the angle of (1, y).
+// The arctangent of y as the angle of (1, y).
 double worst_arctangent(float low, float high, std::uint32_t stride) {
   double worst = 0;
   sweep(low, high, stride, [&](float y) {

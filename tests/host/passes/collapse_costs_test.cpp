@@ -29,11 +29,11 @@ struct Plane {
   double weight;
 };
 
-// Of a mesh, by vertex, in scaled units.
+// A mesh's quadrics, by vertex, in scaled units.
 struct Textbook {
   std::vector<DVec3> points;
   std::vector<std::vector<Plane>> planes;
-  std::vector<double> weight;  // Of all planes of a vertex together.
+  std::vector<double> weight;  // That of all planes of a vertex together.
 
   // The planes of p through its place, those of q through theirs.
   [[nodiscard]] double cost(std::uint32_t p, std::uint32_t q, DVec3 x) const {
@@ -198,7 +198,8 @@ TEST_CASE("collapse costs of a cube are those worked out by hand") {
   const IndexedFaceSet set = test::cube();
   for (const CollapsePlacement placement : kPlacements) {
     const Result3 found = costs_of(set, {.placement = placement});
-    // Of the sides through a vertex, half a unit of area for each triangle of theirs that it is a corner of.
+    // The sides through a vertex count: half a unit of area for each triangle of theirs that it is a corner
+    // of.
     const auto weight = [&](std::uint32_t v, int axis) {
       int triangles = 0;
       for (std::size_t f = 0; f < set.face_count(); ++f) {

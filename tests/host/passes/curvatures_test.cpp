@@ -64,7 +64,7 @@ TEST_CASE("curvatures of spheres are 1/r and 1/r², to second order in the edge 
 TEST_CASE("curvatures of a torus converge to those of the surface, to second order") {
   Errors before;
   for (const std::uint32_t n : {12u, 24u, 48u}) {
-    // Of the point at angle v of the tube, where R = 1 and r = 0.4.
+    // At the point at angle v of the tube, where R = 1 and r = 0.4.
     const auto cosine = [](DVec3 p) { return (std::sqrt(p.x * p.x + p.y * p.y) - 1) / 0.4; };
     const Errors now = errors(
         test::torus(2 * n, n), [&](DVec3 p) { return (1 + 0.8 * cosine(p)) / (0.8 * (1 + 0.4 * cosine(p))); },

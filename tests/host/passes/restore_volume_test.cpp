@@ -20,7 +20,7 @@ namespace {
 
 struct Solid {
   double area = 0, volume = 0, extent = 0, farthest = 0;
-  DVec3 centroid{0.0};  // Of the surface.
+  DVec3 centroid{0.0};  // The surface's.
 };
 
 Solid solid_of(IndexedFaceSet set, const std::vector<Vec3>& points) {

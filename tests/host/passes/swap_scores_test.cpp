@@ -143,7 +143,7 @@ TEST_CASE("swap scores in the plane: a gain in the least angle is a point in the
     if (mesh.is_boundary(h)) return;
     const Quad quad(set, mesh, h);
     const auto turn = [](DVec3 a, DVec3 b, DVec3 c) { return cross(b - a, c - a).z; };
-    // Of triangles that the noise has flipped there is no circle to speak of.
+    // Triangles that the noise has flipped have no circle to speak of.
     if (turn(quad.p, quad.q, quad.left) < 1e-3 || turn(quad.q, quad.p, quad.right) < 1e-3) return;
     const double convex = std::min(turn(quad.left, quad.right, quad.q), turn(quad.right, quad.left, quad.p));
     if (std::fabs(convex) < 1e-3) return;

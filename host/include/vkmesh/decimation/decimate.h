@@ -41,7 +41,7 @@ enum class AttributeKind {
 /// Values of the surface beside its place, borrowed. Linear within each face; they may differ on the two
 /// sides of an edge, which then is a seam.
 struct DecimateAttribute {
-  std::uint32_t components = 1;   ///< Of a value.
+  std::uint32_t components = 1;   ///< Scalars of a value.
   std::span<const float> values;  ///< One value after another.
   /// The value of each corner of the mesh, in the order of its half-edges. Empty: vertex v has value v.
   std::span<const std::uint32_t> corners;
@@ -115,10 +115,10 @@ struct DecimateBounds {
   /// The angle between the normal of a face and the nearest of those of the original's faces that it stands
   /// for: each is handed on to the nearest face when it goes or moves. Radians, in (0, π). Default none.
   std::optional<double> original_normal_deviation;
-  /// Of faces that are made: the longest side over the height upon it, as a multiple of that of an
+  /// Bounds faces that are made: the longest side over the height upon it, as a multiple of that of an
   /// equilateral triangle; at least 1. Default none.
   std::optional<double> aspect_ratio;
-  /// Of edges that are made; above 0. Default none.
+  /// Bounds the length of edges that are made; above 0. Default none.
   std::optional<Length> edge_length;
   /// The edges at a vertex that gets some; at least 3. Default none.
   std::optional<std::size_t> valence;
@@ -210,14 +210,14 @@ struct DecimatedAttributes {
 struct DecimationChanges {
   /// A face that a vertex removal has given new corners, in their order.
   struct Face {
-    std::uint32_t step = 0;  ///< Of the history.
+    std::uint32_t step = 0;  ///< The step of the history.
     std::uint32_t face = kInvalid;
     std::array<std::uint32_t, 3> vertices{kInvalid, kInvalid, kInvalid};
     std::array<std::uint32_t, 3> wedges{kInvalid, kInvalid, kInvalid};  ///< With attributes.
   };
   /// From this collapse on corners of `wedge` are of `into`, which may be the same and has new values.
   struct Wedge {
-    std::uint32_t step = 0;  ///< Of the history.
+    std::uint32_t step = 0;  ///< The step of the history.
     std::uint32_t wedge = kInvalid, into = kInvalid;
   };
   /// The wedge of each corner of the input; empty without attributes and corner_groups.
@@ -306,7 +306,7 @@ using Decimated = BasicDecimated<Vec3>;
 /// vertex goes as any other: a pole of a sphere, with a value for each face there, loses one with each vertex
 /// next to it.
 ///
-/// Of a vertex that is removed, attributes count where old and new edges cross when seen along the normal: by
+/// Attributes of a vertex that is removed count where old and new edges cross when seen along the normal: by
 /// the values of both; and at the corners of the triangle below it, which take over what it stands for, each
 /// its share: by what their values differ from that, as in a collapse into them. The best triangulation is
 /// the best for all of it. A vertex of a seam goes along the seam: to the nearest point of the edge that

@@ -25,8 +25,8 @@ struct CollapseCostOptions {
   /// the bounding box, and a power of two. See unit_frame().
   Vec3 centre{0.0f};
   float scale = 1.0f;
-  /// Of the planes that stand on boundary edges, perpendicular to their face, relative to a plane of the same
-  /// area. In [0, 2^20]. Default 10.
+  /// The weight of planes that stand on boundary edges, perpendicular to their face, relative to a plane of
+  /// the same area. In [0, 2^20]. Default 10.
   float boundary_weight = 10.0f;
   CollapsePlacement placement = CollapsePlacement::kOptimal;  ///< Default optimal.
 };

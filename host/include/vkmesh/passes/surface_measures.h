@@ -16,8 +16,8 @@ struct SurfaceMeasures {
   /// Enclosed volume, positive where the faces look outward; of an open mesh, that between it and the centre
   /// of its bounds.
   double volume = 0.0;
-  DVec3 centroid{0.0};         ///< Of the surface, by area; the centre of the bounds where there is none.
-  Vec3 low{0.0f}, high{0.0f};  ///< Of all positions; both 0 where there are none.
+  DVec3 centroid{0.0};         ///< The surface's, by area; the centre of the bounds where there is none.
+  Vec3 low{0.0f}, high{0.0f};  ///< The bounds of all positions; both 0 where there are none.
 };
 
 /// Sums over faces in 32 bits, by a tree: blocks of 64 in ascending order, then blocks of 64 of these, and so

@@ -1044,9 +1044,9 @@ class SceneReader {
   Notes& notes_;
   AccessorReader accessors_;
   Place place_{dmat4(1), dmat3(1), false, true};
-  std::vector<dmat4> worlds_;  ///< Of each node.
-  std::vector<dmat4> poses_;   ///< Of each point of the present primitive, where a skin poses it.
-  std::vector<dmat4> joints_;  ///< Of the skin that poses the present mesh; empty without one.
+  std::vector<dmat4> worlds_;  ///< Where each node stands.
+  std::vector<dmat4> poses_;   ///< For each point of the present primitive, where a skin poses it.
+  std::vector<dmat4> joints_;  ///< Those of the skin that poses the present mesh; empty without one.
   IndexedFaceSet mesh_;
   std::map<std::string, GrowingChannel> channels_;
   std::vector<std::uint32_t> face_materials_;  ///< materials_.size() for none.

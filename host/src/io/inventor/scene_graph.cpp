@@ -150,7 +150,7 @@ class SceneParser {
   struct Prototype {
     std::vector<SceneField> fields;
     SceneScanner body;
-    std::size_t length = 0;  ///< Of the body.
+    std::size_t length = 0;  ///< The length of the body.
     std::size_t number = 0;  ///< Those defined before have lower ones.
   };
 

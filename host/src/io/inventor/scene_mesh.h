@@ -40,11 +40,11 @@ struct SceneAttribute {
 
 /// The polygons of one shape. A part is what a -1 (or a count) ends: a face, a strip, a row of a mesh.
 struct ScenePolygons {
-  std::vector<std::uint32_t> points;    ///< Of each corner.
-  std::vector<std::uint32_t> ordinals;  ///< Of each corner: its number in the shape's list, ends not counted.
-  std::vector<std::uint32_t> sizes;     ///< Of each face.
-  std::vector<std::uint32_t> parts;     ///< Of each face.
-  std::vector<std::uint32_t> numbers;   ///< Of each face, those left out counted.
+  std::vector<std::uint32_t> points;    ///< The point of each corner.
+  std::vector<std::uint32_t> ordinals;  ///< Each corner's number in the shape's list, ends not counted.
+  std::vector<std::uint32_t> sizes;     ///< The corners of each face.
+  std::vector<std::uint32_t> parts;     ///< The part that each face is of.
+  std::vector<std::uint32_t> numbers;   ///< Each face's number, those left out counted.
 
   void corner(std::uint64_t point, std::uint64_t ordinal) {
     points.push_back(static_cast<std::uint32_t>(point));
@@ -59,7 +59,7 @@ struct ScenePolygons {
 
 /// What shapes have in common whichever node they come from.
 struct SceneShape {
-  std::string_view type;  ///< Of the node, which stands where errors point.
+  std::string_view type;  ///< The node's type, which stands where errors point.
   const SceneDoubles* points = nullptr;
   unsigned width = 3;  ///< 4: homogeneous.
   glm::dmat4 matrix{1.0};

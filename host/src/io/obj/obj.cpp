@@ -440,7 +440,7 @@ class ObjReader {
   NonFinitePoints not_finite_;
   FaceLabels materials_, objects_, groups_;
   std::size_t faces_ = 0, small_faces_ = 0;
-  std::vector<float> colors_;  ///< Of the vertices up to the last that has one.
+  std::vector<float> colors_;  ///< One for each vertex up to the last that has one.
   std::size_t colored_ = 0;
   bool whole_colors_ = true;
   std::size_t weights_ = 0, alphas_ = 0, thirds_ = 0;

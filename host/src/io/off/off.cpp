@@ -386,7 +386,7 @@ class OffReader {
   std::uint64_t points_ = 0, faces_ = 0;
   bool normals_ = false, colors_ = false, uvs_ = false, binary_ = false;
   NonFinitePoints not_finite_;
-  const char* broken_line_ = nullptr;  ///< Of the first face that goes on in the next line.
+  const char* broken_line_ = nullptr;  ///< The line of the first face that goes on in the next.
   std::vector<float> normal_values_, uv_values_;
   LineTail color_;
 };

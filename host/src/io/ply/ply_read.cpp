@@ -46,7 +46,7 @@ struct KnownGroup {
   std::vector<const char*> properties;
 };
 
-// Of several for one channel the first that fits is taken.
+// The first that fits is taken where several serve one channel.
 const std::vector<KnownGroup>& known_groups() {
   static const std::vector<KnownGroup> kGroups = {{"normal", {"nx", "ny", "nz"}},
                                                   {"color", {"red", "green", "blue", "alpha"}},
@@ -110,7 +110,7 @@ struct Sink {
   std::byte* to = nullptr;
   std::size_t stride = 0;
   bool to_float = false;  ///< Coordinates become floats; all else keeps its type.
-  int axis = -1;          ///< Of a coordinate that is placed in double precision.
+  int axis = -1;          ///< The axis of a coordinate that is placed in double precision.
 };
 
 template <class T>
@@ -343,7 +343,7 @@ struct PartPoints {
 /// What the faces of a part had beside their points.
 struct PartFaces {
   std::vector<std::uint64_t> skipped;  ///< Those of fewer than three corners.
-  std::vector<float> uv;               ///< Of each corner.
+  std::vector<float> uv;               ///< Two for each corner.
   std::size_t without_uv = 0;          ///< Corners.
 };
 
@@ -613,7 +613,7 @@ class BodyReader {
     make_channels(element, group_properties(element, std::move(taken), file_.notes), mesh.face_channels,
                   sinks);
 
-    // Of these types any index that names a point is a number.
+    // In these types any index that names a point is a number.
     const bool triangles = Body::kAscii && element.properties.size() == 1 && size_of(indices->type) == 4 &&
                            points_ <= std::numeric_limits<std::int32_t>::max();
     const auto parts = parts_of(element);
@@ -921,8 +921,8 @@ class BodyReader {
   Positions placed_{source_.offset};
   NonFinitePoints not_finite_;
   const Element* unknown_faces_ = nullptr;  ///< An ignored element whose lists name points.
-  std::vector<Block> blocks_;               ///< Of text that is long enough for more than one.
-  std::uint64_t lines_ = 0;                 ///< Of the elements before the present one.
+  std::vector<Block> blocks_;               ///< Parts of a text that is long enough for more than one.
+  std::uint64_t lines_ = 0;                 ///< Lines of the elements before the present one.
 };
 
 }  // namespace

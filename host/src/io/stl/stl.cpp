@@ -188,7 +188,7 @@ class AsciiStlReader {
 
 /// Where the facets of a binary file begin, and what follows them.
 struct BinaryLayout {
-  std::vector<std::size_t> places;  ///< Of each facet, where they do not follow each other.
+  std::vector<std::size_t> places;  ///< Where each facet stands, if they do not follow each other.
   std::uint64_t facets = 0;
   std::uint64_t payload = 0;   ///< Bytes between facets.
   std::uint64_t trailing = 0;  ///< Bytes behind the last.

@@ -103,7 +103,7 @@ class RingWalks {
     Target* target;
   };
   std::vector<Walk> walks_;
-  // Of the walks those before `next_` have taken this step, and those before `kept_` take another.
+  // Walks before `next_` have taken this step, and those before `kept_` take another.
   std::size_t next_ = 0, kept_ = 0;
   std::uint32_t steps_ = 0, max_steps_ = 0;
 };

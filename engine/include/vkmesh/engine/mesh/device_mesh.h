@@ -59,7 +59,7 @@ class VKMESH_API DeviceMesh {
   [[nodiscard]] Result<void> upload_corners_of_vertices();
   [[nodiscard]] Result<void> upload_neighbours();
 
-  std::shared_ptr<Context> context_;  ///< Of the same device as the caller's, which may go.
+  std::shared_ptr<Context> context_;  ///< On the same device as the caller's, which may go.
   const HalfEdgeMesh* mesh_ = nullptr;
   std::uint32_t vertices_ = 0;
   std::uint32_t faces_ = 0;

@@ -20,7 +20,7 @@ struct BilateralGrid {
   PointGrid faces, vertices;
   std::vector<std::uint32_t> used;  ///< The vertices that faces meet, ascending; `vertices` are places in it.
   std::vector<Vec3> used_positions;
-  std::vector<Vec3> centroids;  ///< Of the faces, by face.
+  std::vector<Vec3> centroids;  ///< One for each face.
 };
 
 /// Takes prepared positions (see prepare_positions()). The mesh must have faces. O(n log n). Errors: as

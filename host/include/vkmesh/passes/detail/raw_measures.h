@@ -9,7 +9,7 @@
 
 namespace vkmesh::detail {
 
-/// Of triangles, by their corners, and prepared positions (see prepare_positions()). O(faces).
+/// The measures of triangles, by their corners, and prepared positions (see prepare_positions()). O(faces).
 [[nodiscard]] VKMESH_API RawMeasures raw_measures(std::span<const std::uint32_t> corners,
                                                   std::span<const Vec3> positions);
 
