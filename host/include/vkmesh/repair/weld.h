@@ -56,7 +56,8 @@ struct Welded {
 /// other, in order of first appearance; equal means equal bytes. A name that no corner channel has is passed
 /// over; points that no face uses have the value 0. O(n) expected for n corners. Errors: kUsage for corners
 /// that name no point; kUnsuitable for more than 2^32 - 2 copies; kOutOfMemory.
-[[nodiscard]] Result<IndexedFaceSet> split_at_seams(IndexedFaceSet mesh, std::span<const std::string> names);
+[[nodiscard]] VKMESH_API Result<IndexedFaceSet> split_at_seams(IndexedFaceSet mesh,
+                                                               std::span<const std::string> names);
 
 /// The faces with corners of their own: the way back, after which weld() gives the same faces over the points
 /// that they use. Channels of faces follow; a soup has no place for those of points and corners. O(n) for n
