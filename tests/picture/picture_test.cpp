@@ -243,7 +243,7 @@ TEST_CASE("legends and contact sheets are as large as they say") {
   const Legend legend{"title", ColorMap::kSequential, {0, 1}, {{{1, 2, 3, 255}, "three edges"}}};
   const Picture strip = value(legend_strip(legend, 200, kWhite, 12));
   CHECK(strip.height() == legend_height(legend, 12));
-  CHECK(legend_height(legend, 24) == 2 * legend_height(legend, 12));
+  CHECK(legend_height(legend, 48) == 2 * legend_height(legend, 24));
   CHECK(legend_height({}, 12) == 0);
   CHECK(value(legend_strip({}, 200, kWhite, 12)).height() == 0);
   CHECK(count(strip, {1, 2, 3, 255}) == 81);

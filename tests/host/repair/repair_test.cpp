@@ -305,9 +305,13 @@ TEST_CASE("a face turned among edges of four faces is turned back", "[repair]") 
   // Four cubes stand on the edges of the top of a fifth; four of the upright edges have four faces, too.
   for (const bool quads : {true, false}) {
     const IndexedFaceSet one = quads ? test::quad_cube() : test::cube();
-    IndexedFaceSet five = one;
-    for (const Vec3 offset : {Vec3(1, 0, 1), Vec3(-1, 0, 1), Vec3(0, 1, 1), Vec3(0, -1, 1)})
-      five = test::both(five, one, offset);
+    IndexedFaceSet five;
+    for (const Vec3 offset : {Vec3(0, 0, 0), Vec3(1, 0, 1), Vec3(-1, 0, 1), Vec3(0, 1, 1), Vec3(0, -1, 1)}) {
+      const auto first = static_cast<std::uint32_t>(five.points.size());
+      for (const Vec3& p : one.points) five.points.push_back(p + offset);
+      for (const std::uint32_t c : one.corners) five.corners.push_back(first + c);
+    }
+    for (std::uint32_t c = 0; quads && c <= five.corners.size(); c += 4) five.face_offsets.push_back(c);
     five = weld(five).value().mesh;
     const Consolidated sound = repaired(five);
     CHECK(sound.report.flipped_faces == 0);
