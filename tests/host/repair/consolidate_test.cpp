@@ -170,6 +170,8 @@ TEST_CASE("consolidation can be cancelled at any report, of input that needs no 
         CHECK(result.error().code == ErrorCode::kInterrupted);
       }
     }
+}
+
 namespace {
 
 /// The faces of a torus over points that are repeated along two of its circles, with a value for each copy.
