@@ -185,6 +185,27 @@ std::vector<std::uint32_t> ends_on_shared_curves(const HalfEdgeMesh& mesh, const
   return ends;
 }
 
+/// The vertices of the file, which --index-only keeps as they are, while the surface that they make is
+/// connected and mended: each corner goes on naming its vertex.
+struct VertexBuffer {
+  std::vector<Vec3> points;
+  std::vector<Channel> channels;
+
+  static VertexBuffer of(IndexedFaceSet& mesh) {
+    set_channel(mesh.corner_channels, {kVertex, 1, mesh.corners, {}});
+    return {mesh.points, mesh.point_channels};
+  }
+  static std::vector<std::uint32_t> take_vertices(IndexedFaceSet& mesh) {
+    const auto it = std::ranges::find(mesh.corner_channels, kVertex, &Channel::name);
+    std::vector<std::uint32_t> vertices = std::move(std::get<std::vector<std::uint32_t>>(it->values));
+    mesh.corner_channels.erase(it);
+    return vertices;
+  }
+
+ private:
+  static inline const std::string kVertex = "vertex of the file";
+};
+
 Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteria& criteria) {
   if (!options.ratio && !options.faces && !options.vertices && !options.error && !options.relative_error &&
       !options.time_limit)
@@ -200,12 +221,16 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   if (mesh.face_count() == 0)
     return fail(ErrorCode::kUnsuitable, "a point cloud has no faces to simplify",
                 {job.options().input, {}, {}});
+  VertexBuffer buffer;
+  if (options.index_only) buffer = VertexBuffer::of(mesh);
   VKMESH_TRY(HalfEdgeMesh half_edges, job.consolidate_triangles(mesh));
   if (!mesh.is_triangles()) {
     job.note("polygons were cut into triangles");
     VKMESH_TRY(Triangulated cut, triangulate(mesh));  // as the half-edges were
     mesh = std::move(cut.mesh);
   }
+  const std::vector<std::uint32_t> vertex_of_corner =
+      options.index_only ? VertexBuffer::take_vertices(mesh) : std::vector<std::uint32_t>();
   DecimateOptions decimation = decimation_of(options);
   VKMESH_TRY(decimation.weights, criteria.weights());
   decimation.bounds = criteria.bounds();
@@ -217,8 +242,9 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
              " on curves where three sheets or more meet stay in place, or gaps would open between them");
     decimation.locked.vertices.insert(decimation.locked.vertices.end(), ends.begin(), ends.end());
   }
-  VKMESH_TRY(const SimplifyAttributes attributes,
+  VKMESH_TRY(SimplifyAttributes attributes,
              SimplifyAttributes::of(job, mesh, half_edges, options.attributes, points_stay));
+  attributes.tell_apart(vertex_of_corner);
   attributes.add_to(decimation);
   // The half-edges hold the corners from here on; what is let go now keeps the peak of memory low.
   std::vector<Vec3> points = std::move(mesh.points);
@@ -234,8 +260,11 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   IndexedFaceSet output;
   output.corners.assign(decimated.mesh.origins().begin(), decimated.mesh.origins().end());
   if (options.index_only) {
-    for (std::uint32_t& corner : output.corners) corner = decimated.source_vertex[corner];
-    output.points = std::move(points);
+    for (std::size_t c = 0; c < output.corners.size(); ++c)
+      output.corners[c] =
+          vertex_of_corner[decimated.attributes.source_corner[decimated.attributes.corners[c]]];
+    output.points = std::move(buffer.points);
+    output.point_channels = std::move(buffer.channels);
     attributes.give_index_only(decimated, output);
   } else {
     output.points = std::move(decimated.positions);

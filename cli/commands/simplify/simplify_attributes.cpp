@@ -205,7 +205,6 @@ Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh
 }
 
 void SimplifyAttributes::find_borders(Job& job, const HalfEdgeMesh& half_edges) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
   for (const Channel& channel : face_channels_) {
     if (channel.name == "normal") continue;
     const BorderCount count = count_borders(half_edges, channel);
@@ -217,12 +216,20 @@ void SimplifyAttributes::find_borders(Job& job, const HalfEdgeMesh& half_edges) 
     }
     borders_.push_back(channel.name);
     const std::vector<std::uint32_t> numbers = numbers_of_values(channel);
-    groups_.resize(half_edges.half_edge_count(), 0);
-    known.clear();
-    for (std::size_t c = 0; c < groups_.size(); ++c)
-      groups_[c] = known.try_emplace({groups_[c], numbers[c / 3]}, static_cast<std::uint32_t>(known.size()))
-                       .first->second;
+    std::vector<std::uint32_t> number_of_corner(half_edges.half_edge_count());
+    for (std::size_t c = 0; c < number_of_corner.size(); ++c) number_of_corner[c] = numbers[c / 3];
+    tell_apart(number_of_corner);
   }
+}
+
+void SimplifyAttributes::tell_apart(std::span<const std::uint32_t> number_of_corner) {
+  if (number_of_corner.empty()) return;
+  groups_.resize(number_of_corner.size(), 0);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+  for (std::size_t c = 0; c < groups_.size(); ++c)
+    groups_[c] =
+        known.try_emplace({groups_[c], number_of_corner[c]}, static_cast<std::uint32_t>(known.size()))
+            .first->second;
 }
 
 std::vector<std::string> SimplifyAttributes::unmixed_points() const {
@@ -295,8 +302,11 @@ void SimplifyAttributes::append_points(const std::vector<std::uint32_t>& points,
 }
 
 void SimplifyAttributes::give_index_only(const Decimated& decimated, IndexedFaceSet& output) const {
-  output.point_channels = point_channels_;
   give_faces(decimated, output);
+  // What vertices have, corners had only while the surface was connected.
+  std::erase_if(output.corner_channels, [&](const Channel& channel) {
+    return find_channel(output.point_channels, channel.name) != nullptr;
+  });
 }
 
 }  // namespace vkmesh::cli

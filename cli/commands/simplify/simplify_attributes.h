@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +35,9 @@ class SimplifyAttributes {
   static Result<SimplifyAttributes> of(Job& job, IndexedFaceSet& mesh, const HalfEdgeMesh& half_edges,
                                        const AttributeChoice& choice, bool vertices_stay);
 
+  /// Keeps corners apart that have different numbers, as where different vertices of a buffer stand at one
+  /// place. Empty: none are.
+  void tell_apart(std::span<const std::uint32_t> number_of_corner);
   /// Sets what decimate() is to know; valid as long as this is.
   void add_to(DecimateOptions& options) const;
 
@@ -41,7 +45,7 @@ class SimplifyAttributes {
   void give(const Decimated& decimated, IndexedFaceSet& output) const;
   /// Appends what these points of the input have to the channels of points.
   void append_points(const std::vector<std::uint32_t>& points, IndexedFaceSet& output) const;
-  /// As give(), for faces over all points of the input.
+  /// As give(), for faces over the vertex buffer of the input, whose channels the output has.
   void give_index_only(const Decimated& decimated, IndexedFaceSet& output) const;
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }

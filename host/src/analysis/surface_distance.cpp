@@ -23,7 +23,7 @@ using glm::cross;
 using glm::dot;
 
 constexpr std::size_t kSamplesBetweenReports = 8192;
-/// Of the diagonal: bounds of the Hausdorff distance that are this low count as near enough.
+/// Bounds of the Hausdorff distance below this share of the diagonal count as near enough.
 constexpr double kZero = 1e-10;
 
 using detail::Triangle, detail::squared_distance;
@@ -42,7 +42,7 @@ DVec3 normal_of(const Triangle& t) {
   return cross(t[1] - t[0], t[2] - t[0]);
 }
 
-/// Of the corners in use.
+/// The bounds of the corners in use.
 Bounds bounds_of(const TriangleSurface& surface) {
   Bounds bounds;
   for (const std::uint32_t corner : surface.corners) bounds.add(surface.points[corner]);
@@ -103,7 +103,7 @@ class HausdorffBounds {
 
  private:
   static constexpr std::size_t kMostSplits = 4'000'000;
-  /// Of a piece that is cut along edges the longest side is so many times as long as its bound may be, or
+  /// A piece that is cut along edges has a longest side so many times as long as its bound may be, or
   /// quartering it would be done sooner; and it is not so many times as long as the edge. Squared.
   static constexpr double kLong2 = 256, kLonger2 = 4;
 

@@ -422,7 +422,7 @@ class EdgeCollapses {
         return end;
     return std::nullopt;
   }
-  /// Of p and q, which is at p + d, when both go to p + x.
+  /// The cost of p and of q, which is at p + d, when both go to p + x.
   [[nodiscard]] float cost_at(std::uint32_t p, std::uint32_t q, const Vector3& x, const Vector3& d) const {
     return vertices_[p].quadric.value(x) + vertices_[q].quadric.value(minus(x, d));
   }

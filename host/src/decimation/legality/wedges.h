@@ -245,7 +245,7 @@ class Wedges {
   [[nodiscard]] bool differs_at_origin(const CollapseMesh& mesh, std::uint32_t h) const {
     return of_[h] != of_[CollapseMesh::next(mesh.twin(h))];
   }
-  /// Of the sides of a face that become one when the third collapses: whether both are seams that end at that
+  /// Whether the two sides of a face that become one when the third collapses are both seams that end at that
   /// side and come from a vertex that is fixed, which loses nothing but a wedge.
   [[nodiscard]] bool ends_at_both(const CollapseMesh& mesh, std::uint32_t next,
                                   std::uint32_t previous) const {

@@ -21,7 +21,7 @@ bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t 
   });
 }
 
-/// Of the share of vertices that is to be left, so much at least is left of those that may go.
+/// At least so much of the share of vertices that is to be left is left of those that may go.
 constexpr double kLeastShare = 0.125;
 
 /// How many vertices stay whatever goes, of so many: those that are locked, or as many as components need at
