@@ -83,6 +83,30 @@ TEST_CASE("simplify closes what is closed but for seams, and repeats points agai
   CHECK(diagnose(mesh_in(out)).value().boundary_edges > 0);
 }
 
+TEST_CASE("simplify --index-only keeps the vertices of the file, and closes what is closed but for seams") {
+  const std::string operation = GENERATE("half-edge-collapse", "vertex-removal");
+  CAPTURE(operation);
+  const Scratch scratch;
+  const std::string in = torus_file(scratch, "torus.glb"), out = scratch.path("out.glb");
+  vkmesh_run({"simplify", in, out, "--ratio", "0.3", "--operation", operation, "--index-only"});
+  const IndexedFaceSet before = mesh_in(in), after = mesh_in(out);
+  CHECK(after.face_count() <= 922);
+  CHECK(after.points == before.points);
+  CHECK(floats_of(after, "uv") == floats_of(before, "uv"));
+  CHECK(open_edges(after) == 0);
+  // No triangle reaches across a seam: texture coordinates of its corners are near each other.
+  const std::vector<float> uv = floats_of(after, "uv");
+  for (std::size_t f = 0; f < after.face_count(); ++f)
+    for (const unsigned k : {0u, 1u}) {
+      float low = 1, high = 0;
+      for (const std::uint32_t c : after.face(f)) {
+        low = std::min(low, uv[2 * c + k]);
+        high = std::max(high, uv[2 * c + k]);
+      }
+      REQUIRE(high - low < 0.7f);
+    }
+}
+
 TEST_CASE("OBJ needs no points repeated: the seam is one of its texture coordinates") {
   const Scratch scratch;
   const std::string in = torus_file(scratch, "torus.glb"), out = scratch.path("out.obj");
