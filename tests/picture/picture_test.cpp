@@ -156,11 +156,13 @@ TEST_CASE("text too long is shortened at a whole character, at its beginning or 
   for (std::int64_t width = 0; width < face.width(path); width += 3) {
     const std::string end = face.end_that_fits(path, width),
                       beginning = face.beginning_that_fits(path, width);
-    for (const std::string& text : {end, beginning}) {
-      REQUIRE(face.width(text) <= width);
-      REQUIRE(text.find("\xef\xbf\xbd") == std::string::npos);
-    }
+    for (const std::string& text : {end, beginning}) REQUIRE(face.width(text) <= width);
     if (end.empty()) continue;
+    const auto begins_character = [&](std::size_t place) {
+      return (static_cast<unsigned char>(path[place]) & 0xc0u) != 0x80u;
+    };
+    REQUIRE((end.size() == 3 || begins_character(path.size() - (end.size() - 3))));
+    REQUIRE(begins_character(beginning.size() - 3));
     REQUIRE(end.starts_with("\xe2\x80\xa6"));
     REQUIRE(path.ends_with(end.substr(3)));
     REQUIRE(beginning.ends_with("\xe2\x80\xa6"));
