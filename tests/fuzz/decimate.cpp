@@ -433,12 +433,14 @@ void require_criteria(const BasicDecimated<Point>& result, const Input<Point>& i
           "the distance is told when it is watched");
   const auto& counts = result.blocked.counts;
   const std::size_t blocked = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  const std::size_t left = options.operation == DecimateOperation::kVertexRemoval ? result.mesh.vertex_count()
+                                                                                  : result.mesh.edge_count();
   if (result.stop == DecimateStop::kTargetReached)
     require(blocked == 0, "nothing blocks what could go on");
+  else if (result.stop == DecimateStop::kOutOfProportion)
+    require(blocked <= left, "no more is blocked than is left");  // some of it could go
   else if (result.stop != DecimateStop::kTimeLimit)
-    require(blocked == (options.operation == DecimateOperation::kVertexRemoval ? result.mesh.vertex_count()
-                                                                               : result.mesh.edge_count()),
-            "something blocks all that is left");
+    require(blocked == left, "something blocks all that is left");
   if constexpr (std::is_same_v<Point, Vec3>) {
     if (!result.distance_bound || options.prune_size || result.mesh.face_count() > 500) return;
     const auto distance = surface_distance({input.points, input.corners},

@@ -35,10 +35,10 @@ struct SeamSides {
 /// wedges at one of its ends, or both, is a seam.
 ///
 /// Where two seams pass through a vertex inside the surface and split its corners into two wedges, it may
-/// move and go, along the seam. Where a seam ends, the values at its last edge differ at the other end alone:
-/// the vertex there has one wedge, and moves and goes as any other. So the pole of a textured sphere, where
-/// all its meridians are seams which end at the next circle, loses one wedge with each vertex of that circle.
-/// Any other vertex of a seam (where seams meet or reach the boundary) is fixed.
+/// move and go, along the seam. Where a seam ends, the values at its last edge differ at the other end alone,
+/// and the vertex there has one wedge. It moves and goes as any other if the seam comes from a pole, all of
+/// whose edges are seams: so the pole of a textured sphere loses one wedge with each vertex of the next
+/// circle. Any other vertex of a seam (where seams end, meet or reach the boundary) is fixed.
 class Wedges {
  public:
   /// `same(c, d)`: whether two corners of the input, at one vertex, have the same attributes. Locks the
@@ -91,10 +91,12 @@ class Wedges {
     for (const std::uint32_t g : {h, t}) {
       if (mesh.is_ghost(g)) continue;
       const std::uint32_t next = CollapseMesh::next(g), previous = CollapseMesh::previous(g);
-      const bool pole = ends_at_both(mesh, next, previous);
-      if (!pole && is_curve(mesh, next) && is_curve(mesh, previous)) return false;
-      at_pole |= pole;
+      if (!is_curve(mesh, next) || !is_curve(mesh, previous)) continue;
+      // The face's chart goes on across h, which one face of the two must let go on.
+      if (at_pole || seam || on_boundary(mesh, h) || !ends_at_both(mesh, next, previous)) return false;
+      at_pole = true;
     }
+    if (at_pole && !ends_alone(mesh, mesh.origin(h)) && !ends_alone(mesh, mesh.origin(t))) return false;
     // Ends of seams would join these to curves around a chart.
     const bool ends_meet =
         ((p & kEnd) != 0 && (q & (kEnd | kBoundary)) != 0) || ((q & kEnd) != 0 && (p & kBoundary) != 0);
@@ -232,10 +234,16 @@ class Wedges {
     return on_boundary(mesh, h) || is_seam(mesh, h);
   }
   [[nodiscard]] bool can_shift_ends(const CollapseMesh& mesh, std::span<const std::uint32_t> edges) const {
+    // A curve of seams that meet at the vertex would be cut, and one that reaches the boundary part from it.
+    const bool on_the_boundary = (marks_[mesh.origin(edges[0])] & kBoundary) != 0;
     bool can = true;
+    std::size_t ends = 0;
     for_each_end(mesh, edges, [&](std::size_t i) {
-      const std::uint32_t v = mesh.target(before(edges, i));
-      can = can && ends_from_fixed(mesh, edges[i]) && (!on_seam(v) || is_fixed(v));
+      const std::uint32_t h = before(edges, i), v = mesh.target(h);
+      // The neighbour on which the seam ends next has no other curve that it would be joined to.
+      const bool same_pole = ends_alone(mesh, v) && is_seam(mesh, CollapseMesh::next(h));
+      can = can && ++ends == 1 && !on_the_boundary && ends_from_fixed(mesh, edges[i]) &&
+            (marks_[v] == 0 || same_pole);
     });
     return can;
   }
@@ -244,6 +252,18 @@ class Wedges {
   }
   [[nodiscard]] bool differs_at_origin(const CollapseMesh& mesh, std::uint32_t h) const {
     return of_[h] != of_[CollapseMesh::next(mesh.twin(h))];
+  }
+  /// Whether one seam ends at the vertex, away from the boundary: nothing else is joined to what it meets.
+  [[nodiscard]] bool ends_alone(const CollapseMesh& mesh, std::uint32_t v) const {
+    if ((marks_[v] & kCurve) != 0) return false;
+    std::size_t seams = 0;
+    const std::uint32_t start = mesh.vertices[v].leading;
+    std::uint32_t h = start;
+    do {
+      seams += is_seam(mesh, h) ? 1 : 0;
+      h = mesh.around_vertex(h);
+    } while (h != start);
+    return seams == 1;
   }
   /// Whether the two sides of a face that become one when the third collapses are both seams that end at that
   /// side and come from a vertex that is fixed, which loses nothing but a wedge.
@@ -288,6 +308,20 @@ class Wedges {
     } while (h != start);
   }
 
+  /// Whether the seam of the vertex comes from a pole: away from the boundary, and each of its edges is a
+  /// seam at which its own values differ.
+  [[nodiscard]] bool ends_at_pole(const CollapseMesh& mesh, std::uint32_t v) const {
+    std::uint32_t h = mesh.vertices[v].leading;
+    while (!is_seam(mesh, h)) h = mesh.around_vertex(h);
+    const std::uint32_t from_pole = mesh.twin(h);
+    h = from_pole;
+    do {
+      if (on_boundary(mesh, h) || !differs_at_origin(mesh, h)) return false;
+      h = mesh.around_vertex(h);
+    } while (h != from_pole);
+    return true;
+  }
+
   void mark(CollapseMesh& mesh, std::uint32_t v) {
     const std::uint32_t start = mesh.vertices[v].leading;
     std::size_t seams = 0, wedges = 0;
@@ -301,7 +335,7 @@ class Wedges {
     for_each_at(mesh, v, [&](std::uint32_t) { ++wedges; });
     if (boundary) marks_[v] |= kBoundary;
     if (seams == 0) return;
-    if (wedges == 1) {
+    if (wedges == 1 && seams == 1 && !boundary && ends_at_pole(mesh, v)) {
       marks_[v] |= kEnd;
       return;
     }
