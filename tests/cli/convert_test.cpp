@@ -244,20 +244,7 @@ TEST_CASE("simplify keeps points that no face uses, and their attributes") {
 
 TEST_CASE("simplify lets attributes of corners go whose weight is 0, and their seams with them") {
   const Scratch scratch;
-  // An octahedron of whose faces each has texture coordinates of its own, so that every edge is a seam.
-  std::string text;
-  for (const char* v : {"2 0 0", "-2 0 0", "0 2 0", "0 -2 0", "0 0 2", "0 0 -2"})
-    text += std::string("v ") + v + "\n";
-  for (int i = 0; i < 24; ++i) text += "vt " + std::to_string(i % 5) + " " + std::to_string(i) + "\n";
-  const int faces[8][3] = {{1, 3, 5}, {3, 2, 5}, {2, 4, 5}, {4, 1, 5},
-                           {3, 1, 6}, {2, 3, 6}, {4, 2, 6}, {1, 4, 6}};
-  for (int f = 0; f < 8; ++f) {
-    text += "f";
-    for (int k = 0; k < 3; ++k)
-      text += " " + std::to_string(faces[f][k]) + "/" + std::to_string(3 * f + k + 1);
-    text += "\n";
-  }
-  const std::string in = scratch.file("in.obj", text);
+  const std::string in = scratch.file("in.obj", octahedron_of_seams());
   const Outcome outcome =
       vkmesh_run({"simplify", in, scratch.path("a.off"), "--ratio", "0.5", "--attribute", "uv=0"});
   REQUIRE(outcome.code == 0);

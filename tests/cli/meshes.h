@@ -19,6 +19,23 @@ inline const std::string kCubeOff =
 inline const std::string kFinOff =
     "OFF\n5 3 0\n0 0 0\n1 0 0\n0.5 1 0\n0.5 -1 0\n0.5 0 1\n3 0 1 2\n3 1 0 3\n3 0 1 4\n";
 
+/// OBJ text of an octahedron of whose faces each has texture coordinates of its own: every edge is a seam.
+inline std::string octahedron_of_seams() {
+  std::string text;
+  for (const char* v : {"2 0 0", "-2 0 0", "0 2 0", "0 -2 0", "0 0 2", "0 0 -2"})
+    text += std::string("v ") + v + "\n";
+  for (int i = 0; i < 24; ++i) text += "vt " + std::to_string(i % 5) + " " + std::to_string(i) + "\n";
+  const int faces[8][3] = {{1, 3, 5}, {3, 2, 5}, {2, 4, 5}, {4, 1, 5},
+                           {3, 1, 6}, {2, 3, 6}, {4, 2, 6}, {1, 4, 6}};
+  for (int f = 0; f < 8; ++f) {
+    text += "f";
+    for (int k = 0; k < 3; ++k)
+      text += " " + std::to_string(faces[f][k]) + "/" + std::to_string(3 * f + k + 1);
+    text += "\n";
+  }
+  return text;
+}
+
 /// The mesh as OFF text, written here and not by the library.
 inline std::string off_of(const IndexedFaceSet& mesh) {
   std::string text =

@@ -185,19 +185,7 @@ TEST_CASE("simplify keeps the borders of materials, unless it is told to let the
 
 TEST_CASE("simplify names the option that frees seams where nothing can go") {
   const Scratch scratch;
-  std::string text;
-  for (const char* v : {"2 0 0", "-2 0 0", "0 2 0", "0 -2 0", "0 0 2", "0 0 -2"})
-    text += std::string("v ") + v + "\n";
-  for (int i = 0; i < 24; ++i) text += "vt " + std::to_string(i % 5) + " " + std::to_string(i) + "\n";
-  const int faces[8][3] = {{1, 3, 5}, {3, 2, 5}, {2, 4, 5}, {4, 1, 5},
-                           {3, 1, 6}, {2, 3, 6}, {4, 2, 6}, {1, 4, 6}};
-  for (int f = 0; f < 8; ++f) {
-    text += "f";
-    for (int k = 0; k < 3; ++k)
-      text += " " + std::to_string(faces[f][k]) + "/" + std::to_string(3 * f + k + 1);
-    text += "\n";
-  }
-  const std::string in = scratch.file("in.obj", text), out = scratch.path("a.off");
+  const std::string in = scratch.file("in.obj", octahedron_of_seams()), out = scratch.path("a.off");
   const Outcome held = vkmesh_run({"simplify", in, out, "--ratio", "0.5"});
   REQUIRE(held.code == 0);
   CHECK(mesh_in(out).face_count() == 8);
