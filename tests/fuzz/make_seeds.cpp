@@ -13,6 +13,7 @@
 #include <vkmesh/io/mesh_io.h>
 
 #include "face_set.h"
+#include "support/inventor_bytes.h"
 
 namespace vkmesh::fuzz {
 namespace {
@@ -127,6 +128,12 @@ bool write_seeds(const std::filesystem::path& folder) {
         written = write(path, encoded->data(), encoded->size()) && written;
       }
     }
+  }
+  for (const bool has_flags : {false, true}) {
+    const test::InventorBytes iv{has_flags};
+    const std::string bytes = iv.header() + test::inventor_scene(iv);
+    const auto path = folder / "iv" / (has_flags ? "scene-binary-2.1" : "scene-binary-2.0");
+    written = write(path, bytes.data(), bytes.size()) && written;
   }
   return written;
 }

@@ -66,6 +66,7 @@ struct Source {
   Positions* positions = nullptr;                 ///< Where readers place every position.
   const Source* outer = nullptr;                  ///< The file that inlines this one.
   int* inlines = nullptr;                         ///< How many files were inlined, of all that are read.
+  bool has_lines = true;                          ///< False: bad_line() tells the byte.
 
   /// kUnreadable at the line that holds `at`.
   [[nodiscard]] tl::unexpected<Error> bad_line(const char* at, std::string message) const;
@@ -158,8 +159,10 @@ bool to_canonical_color(Channel& channel);
 /// Whether the first line with content is that of an XYZ file.
 [[nodiscard]] bool is_xyz(std::string_view bytes);
 [[nodiscard]] Result<MeshFile> parse_gltf(const Source& source);
-/// kInventor (version 2, ascii) or kVrml1.
+/// The text of kInventor or kVrml1.
 [[nodiscard]] Result<MeshFile> parse_inventor(const Source& source, FileFormat format);
+/// OpenInventor 2.0 and 2.1 in binary.
+[[nodiscard]] Result<MeshFile> parse_binary_inventor(const Source& source);
 [[nodiscard]] Result<MeshFile> parse_vrml2(const Source& source);
 /// Whether this is GLB, or JSON that looks like glTF.
 [[nodiscard]] bool is_gltf(std::string_view bytes);

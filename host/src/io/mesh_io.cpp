@@ -25,6 +25,7 @@ namespace vkmesh {
 namespace detail {
 
 tl::unexpected<Error> Source::bad_line(const char* at, std::string message) const {
+  if (!has_lines) return bad_byte(at, std::move(message));
   // Counted only when something is wrong. A file without line feeds ends its lines with carriage returns.
   const auto upto = bytes.begin() + (at - bytes.data());
   const char line_end = bytes.find('\n') == std::string_view::npos ? '\r' : '\n';
@@ -278,11 +279,11 @@ Result<MeshFile> parse_scene_file(const Source& source) {
     return parse_inventor(source, FileFormat::kInventor);
   if (line.starts_with("#VRML V1.0 ascii")) return parse_inventor(source, FileFormat::kVrml1);
   if (line.starts_with("#VRML V2.0 utf8")) return parse_vrml2(source);
-  if (line.find("binary") != std::string_view::npos)
-    return source.bad_line(line.data(),
-                           "binary Inventor files are not read: write it as ascii, for example with ivcat");
+  if (line.starts_with("#Inventor V2.1 binary") || line.starts_with("#Inventor V2.0 binary"))
+    return parse_binary_inventor(source);
   return source.bad_line(line.data(),
-                         "only Inventor in ascii, VRML 1.0 in ascii and VRML 2.0 in utf8 are read");
+                         "only Inventor in ascii and (V2.0 and V2.1) binary, VRML 1.0 in ascii and VRML 2.0 "
+                         "in utf8 are read");
 }
 
 }  // namespace
@@ -290,13 +291,13 @@ Result<MeshFile> parse_scene_file(const Source& source) {
 Result<MeshFile> parse_format(const Source& source) {
   const std::string_view bytes = source.bytes;
   if (bytes.empty()) return fail(ErrorCode::kUnreadable, "the file is empty", {source.name, {}, {}});
-  // The magic number of PLY is its first line; a binary STL file of the right size is one whatever its header
-  // says.
+  // The magic number of PLY, Inventor and VRML is their first line; a binary STL file of the right size is
+  // one whatever its header says.
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply "))
     return parse_ply(source);
+  if (bytes.starts_with("#Inventor ") || bytes.starts_with("#VRML ")) return parse_scene_file(source);
   if (stl_binary_size(bytes) == bytes.size()) return parse_stl_binary(source);
   if (is_gltf(bytes)) return parse_gltf(source);
-  if (bytes.starts_with("#Inventor ") || bytes.starts_with("#VRML ")) return parse_scene_file(source);
 
   TextCursor text(bytes, '#');
   text.skip_to_content();

@@ -104,7 +104,8 @@ TEST_CASE("Inventor headers are told apart", "[io][inventor]") {
   const std::string body = kPoints + kTriangle;
   CHECK(parse_file("#Inventor V2.0 ascii  \r\n" + body, "a").format == FileFormat::kInventor);
   CHECK(parse_file("#VRML V1.0 ascii\n" + body, "a").format == FileFormat::kVrml1);
-  CHECK_THAT(parse_error("#Inventor V2.1 binary\n", "a.iv").message, Catch::Contains("ivcat"));
+  CHECK_THAT(parse_error("#Inventor V1.0 binary\n", "a.iv").message, Catch::Contains("V2.0 and V2.1"));
+  CHECK_THAT(parse_error("#Inventor V2.1 binary\n", "a.iv").message, Catch::Contains("neither polygons"));
   CHECK(parse_file("#Inventor V1.0 ascii\n" + body, "a.iv").format == FileFormat::kInventor);
   CHECK_THAT(parse_error("#Inventor V3.0 ascii\n" + body, "a.iv").message,
              Catch::Contains("only Inventor in ascii"));
@@ -396,6 +397,12 @@ TEST_CASE("Inventor content that is not kept is named", "[io][inventor]") {
               "Scale { scaleFactor 2 2 2 ~ } " +
               kPoints + kTriangle + "}")
             .points[0] == Vec3(0, 0, 1));
+  // Nor does a value count that stands before such a flag.
+  CHECK(
+      scene("Scale { scaleFactor 2 2 2 ~ } Translation { translation ~ } " + kPoints + kTriangle).points[1] ==
+      Vec3(1, 0, 0));
+  CHECK(scene("Scale { scaleFactor 2 2 2 ~ = USE Engine.out } " + kPoints + kTriangle).points[1] ==
+        Vec3(1, 0, 0));
 }
 
 TEST_CASE("malformed Inventor files are refused where they break", "[io][inventor][bad]") {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
@@ -163,6 +164,78 @@ TEST_CASE("VRML 2 content that is not kept is named", "[io][vrml]") {
                                  "1 'Script' nodes ignored", "1 'TimeSensor' nodes ignored",
                                  "1 'WorldInfo' nodes ignored"});
   CHECK(std::get<IndexedFaceSet>(file.geometry).corners.size() == 24 + 6);
+}
+
+TEST_CASE("a PROTO may define others within its body", "[io][vrml]") {
+  const auto mesh = [](const std::string& body) { return parse(kHead + body, "a.wrl"); };
+  // The width of box number `box`.
+  const auto width_of = [](const IndexedFaceSet& boxes, std::size_t box) {
+    float low = boxes.points[8 * box].x, high = low;
+    for (std::size_t p = 8 * box; p < 8 * box + 8; ++p) {
+      low = std::min(low, boxes.points[p].x);
+      high = std::max(high, boxes.points[p].x);
+    }
+    return high - low;
+  };
+  const auto width = [&](const std::string& body) { return width_of(mesh(body), 0); };
+  const std::string box = "{ Shape { geometry Box { size IS size } } }\n";
+  CHECK(width("Shape { geometry Box { size 3 1 1 } }") == 3);
+  // Values go through both, and a value that the outer one does not give is the inner one's.
+  const std::string nested =
+      "PROTO Crate [ field SFVec3f outer 1 1 1 field MFNode more [ ] ] {\n"
+      "  PROTO Side [ field SFVec3f size 5 1 1 eventIn SFTime pushed field MFNode kids [ ] ] {\n"
+      "    Group { children [ Shape { geometry Box { size IS size } } Group { children IS kids } ] } }\n"
+      "  Group { children [ Side { size IS outer pushed IS touched kids IS more } ] } }\n";
+  CHECK(width(nested + "Crate { outer 2 1 1 }") == 2);
+  CHECK(width(nested + "Crate { }") == 1);
+  CHECK(mesh(nested + "Crate { more [ Shape { geometry Box { } } Shape { geometry Box { } } ] }")
+            .face_count() == 18);
+  CHECK(sentences(scene_file(nested + "Crate { } Crate { }").notes) ==
+        std::vector<std::string>{"4 instances of PROTOs expanded"});
+  CHECK(width("PROTO A [ field SFVec3f a 7 1 1 ] { PROTO B [ field SFVec3f size 6 1 1 ] " + box +
+              "B { } } A { }") == 6);
+  // The inner one hides an outer one of its name, within the body alone; a PROTO that stands outside keeps to
+  // those that it was written with.
+  const std::string two = "PROTO Side [ field SFVec3f size 4 1 1 ] " + box +
+                          "PROTO Pair [ ] { Side { } }\n"
+                          "PROTO Own [ ] { PROTO Side [ field SFVec3f size 8 1 1 ] " +
+                          box + "Group { children [ Side { } Pair { } ] } }\n";
+  const IndexedFaceSet own = mesh(two + "Own { } Side { }");
+  REQUIRE(own.points.size() == 24);
+  CHECK(width_of(own, 0) == 8);
+  CHECK(width_of(own, 1) == 4);
+  CHECK(width_of(own, 2) == 4);
+  // What is defined in a body is not known outside it.
+  CHECK(sentences(scene_file(nested + "Crate { } Side { }").notes).back() == "1 'Side' nodes ignored");
+  // Three levels deep.
+  CHECK(
+      width("PROTO A [ field SFVec3f a 1 1 1 ] { PROTO B [ field SFVec3f b 1 1 1 ] { PROTO C [ field SFVec3f "
+            "size 1 1 1 ] " +
+            box + "C { size IS b } } B { b IS a } } A { a 9 1 1 }") == 9);
+}
+
+TEST_CASE("a PROTO that stands in itself is refused", "[io][vrml][bad]") {
+  const auto error = [](const std::string& body) { return parse_error(kHead + body, "a.wrl"); };
+  const std::string shape = "Shape { geometry Box { } } ";
+  const std::string itself = "PROTO A [ ] {\nGroup { children [ A { } ] } }\nA { }";
+  // One of that name before it does not matter.
+  for (const std::string& body : {itself, "PROTO A [ ] { " + shape + "} " + itself,
+                                  std::string("PROTO A [ ] { PROTO B [ ] {\nA { } }\nB { } }\nA { }")}) {
+    CHECK_THAT(error(body).message, Catch::Contains("the PROTO 'A' stands in itself"));
+    CHECK(error(body).where.line == 3u);
+  }
+  CHECK(error("PROTO A [ ] { PROTO B [ ] { Group { children B { } } } B { } } A { }").message ==
+        "the PROTO 'B' stands in itself");
+  // Each holds the one before it twice; and names that are looked for among many.
+  std::string doubled = "PROTO P0 [ ] { " + shape + "}\n", many;
+  for (int i = 1; i < 40; ++i) {
+    const std::string before = "P" + std::to_string(i - 1) + " { } ";
+    doubled += "PROTO P" + std::to_string(i) + " [ ] { Group { children [ " + before + before + "] } }\n";
+  }
+  CHECK_THAT(error(doubled + "P39 { }").message, Catch::Contains("out of proportion to the file"));
+  for (int i = 0; i < 20000; ++i) many += "PROTO Q [ ] { Group { } }\n";
+  for (int i = 0; i < 20000; ++i) many += "Odd { }\n";
+  CHECK_THAT(error(many + shape).message, Catch::Contains("out of proportion to the file"));
 }
 
 TEST_CASE("malformed VRML 2 files are refused where they break", "[io][vrml][bad]") {

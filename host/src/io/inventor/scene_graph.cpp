@@ -1,122 +1,17 @@
 #include "io/inventor/scene_graph.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <deque>
 #include <utility>
 
+#include "io/inventor/scene_scanner.h"
 #include "io/text.h"
 
 namespace vkmesh::detail {
 namespace {
 
-bool is_blank(char c) {
-  return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == ',' || c == '\v' || c == '\f';
-}
-
-bool ends_word(char c) {
-  return is_blank(c) || c == '{' || c == '}' || c == '[' || c == ']' || c == '"' || c == '#';
-}
-
 bool begins_number(char c) {
   return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
-}
-
-/// Walks over the text of a scene. Commas are blanks, comments run from # to the end of the line.
-class SceneScanner {
- public:
-  explicit SceneScanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
-
-  [[nodiscard]] const char* at() const { return at_; }
-  [[nodiscard]] bool at_end() const { return at_ == end_; }
-  [[nodiscard]] std::string_view rest() const { return {at_, static_cast<std::size_t>(end_ - at_)}; }
-
-  void skip() {
-    while (at_ != end_) {
-      if (is_blank(*at_)) {
-        ++at_;
-      } else if (*at_ == '#') {
-        while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
-      } else {
-        return;
-      }
-    }
-  }
-
-  /// What the next content begins with; 0 at the end.
-  char peek() {
-    skip();
-    return at_ == end_ ? '\0' : *at_;
-  }
-
-  bool accept(char c) {
-    if (peek() != c || at_ == end_) return false;
-    ++at_;
-    return true;
-  }
-
-  /// The next word or number; empty where a bracket, a quote or the end stands.
-  std::string_view word() {
-    skip();
-    const char* from = at_;
-    while (at_ != end_ && !ends_word(*at_)) ++at_;
-    return {from, static_cast<std::size_t>(at_ - from)};
-  }
-
-  /// Over a quoted string that begins here. False where it does not end.
-  bool skip_string() {
-    for (++at_; at_ != end_; ++at_) {
-      if (*at_ == '"') {
-        ++at_;
-        return true;
-      }
-      if (*at_ == '\\' && at_ + 1 != end_) ++at_;
-    }
-    return false;
-  }
-
-  void skip_one() {
-    if (at_ != end_) ++at_;
-  }
-
-  /// To behind the next `c`. False where there is none.
-  bool skip_past(char c) {
-    while (at_ != end_)
-      if (*at_++ == c) return true;
-    return false;
-  }
-
-  /// From behind an opening bracket to behind the one that closes it. False where none does.
-  bool skip_nested(char open, char close) {
-    for (std::size_t depth = 1; peek() != '\0' || !at_end();) {
-      if (*at_ == '"') {
-        if (!skip_string()) return false;
-        continue;
-      }
-      if (*at_ == open) ++depth;
-      if (*at_++ == close && --depth == 0) return true;
-    }
-    return false;
-  }
-
-  /// A number, which must end where a word ends.
-  template <class T>
-  bool number(T& value) {
-    skip();
-    TextCursor text(rest());
-    if (!text.number_prefix(value) || (!text.at_end() && !ends_word(*text.at()))) return false;
-    at_ = text.at();
-    return true;
-  }
-
- private:
-  const char* at_;
-  const char* end_;
-};
-
-/// A name as a message shows it.
-std::string shown(std::string_view name) {
-  return TextCursor(name).found();
 }
 
 class SceneParser {
@@ -134,15 +29,12 @@ class SceneParser {
   }
 
   void add_to(Notes& notes) const {
-    const auto note = [&](std::size_t count, const char* code, const char* what) {
-      if (count > 0) notes.push_back({code, std::to_string(count) + " " + what + " ignored"});
-    };
     if (expanded_ > 0)
       notes.push_back({"repaired.prototype", std::to_string(expanded_) + " instances of PROTOs expanded"});
-    note(prototypes_, "dropped.externproto", "EXTERNPROTO definitions");
-    note(routes_, "dropped.route", "ROUTE statements");
-    note(connections_, "dropped.connection", "connections of fields");
-    note(undefined_, "skipped.use", "uses of names that no node before them has");
+    note_ignored(notes, prototypes_, "dropped.externproto", "EXTERNPROTO definitions");
+    note_ignored(notes, routes_, "dropped.route", "ROUTE statements");
+    note_ignored(notes, connections_, "dropped.connection", "connections of fields");
+    note_ignored(notes, undefined_, "skipped.use", "uses of names that no node before them has");
   }
 
  private:
@@ -151,7 +43,9 @@ class SceneParser {
     std::vector<SceneField> fields;
     SceneScanner body;
     std::size_t length = 0;  ///< The length of the body.
-    std::size_t number = 0;  ///< Those defined before have lower ones.
+    std::string_view name;
+    Prototype* outer = nullptr;  ///< The one defined before it where it was defined, as all that are visible.
+    bool is_open = false;        ///< An instance of it is being expanded.
   };
 
   tl::unexpected<Error> expected(const std::string& what) {
@@ -206,7 +100,7 @@ class SceneParser {
       const auto found = defined_.find(name);
       if (found != defined_.end()) return found->second;
       ++undefined_;
-      return kIgnored;
+      return kIgnoredNode;
     }
     std::string_view name;
     if (word == "DEF") {
@@ -229,13 +123,12 @@ class SceneParser {
       return source_.bad_line(type.data(), "the node " + shown(type) + " does not end");
     };
     if (known == known_.end()) {
-      const auto prototype = prototypes_of_.find(type);
-      if (prototype != prototypes_of_.end() && prototype->second.number < visible_prototypes_)
-        return expand(prototype->second, type, depth);
+      VKMESH_TRY(Prototype* const prototype, prototype_named(type));
+      if (prototype != nullptr) return expand(*prototype, type, depth);
       ignored_.add(type);
       VKMESH_TRY(const bool ends, skip_ignored(depth));
       if (!ends) return endless();
-      return kIgnored;
+      return kIgnoredNode;
     }
     if (depth >= kMaxSceneDepth)
       return source_.bad_line(type.data(),
@@ -304,28 +197,43 @@ class SceneParser {
     if (name.empty() || !scan_.accept('[')) return expected("'[' after PROTO and its name");
     if (depth >= kMaxSceneDepth)
       return source_.bad_line(at, "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
-    Prototype made{{}, scan_, 0, 0};
+    Prototype made{{}, scan_, 0, name, innermost_};
     VKMESH_TRY(made.fields, interface(depth));
     if (!scan_.accept('{')) return expected("'{' after the interface of a PROTO");
     made.body = scan_;
     if (!scan_.skip_nested('{', '}')) return source_.bad_line(at, "a PROTO has no body that ends");
     made.length = static_cast<std::size_t>(scan_.at() - made.body.at());
-    made.number = prototypes_of_.size();
-    // The first of a name stays: so none can stand in itself.
-    prototypes_of_.try_emplace(name, std::move(made));
+    innermost_ = &defined_prototypes_.emplace_back(std::move(made));
+    return {};
+  }
+
+  /// The PROTO of that name that is visible here, or nullptr. One within the body of another hides those
+  /// around it, and ends with it.
+  Result<Prototype*> prototype_named(std::string_view name) {
+    for (Prototype* found = innermost_; found != nullptr; found = found->outer) {
+      VKMESH_CHECK(spend(1, name));
+      if (found->name == name) return found;
+    }
+    return nullptr;
+  }
+
+  Result<void> spend(std::size_t steps, std::string_view at) {
+    if (steps > expansion_)
+      return source_.bad_line(at.data(),
+                              "the instances of PROTOs make a scene out of proportion to the file");
+    expansion_ -= steps;
     return {};
   }
 
   /// An instance of a PROTO, whose body begins here: the first node of the PROTO's body, in which the fields
   /// that the instance gives stand where the body says IS.
-  Result<std::uint32_t> expand(const Prototype& prototype, std::string_view type, std::size_t depth) {
+  Result<std::uint32_t> expand(Prototype& prototype, std::string_view type, std::size_t depth) {
+    if (prototype.is_open)
+      return source_.bad_line(type.data(), "the PROTO " + shown(type) + " stands in itself");
     if (depth >= kMaxSceneDepth)
       return source_.bad_line(type.data(),
                               "nodes stand in more than " + std::to_string(kMaxSceneDepth) + " others");
-    if (prototype.length > expansion_)
-      return source_.bad_line(type.data(),
-                              "the instances of PROTOs make a scene out of proportion to the file");
-    expansion_ -= prototype.length;
+    VKMESH_CHECK(spend(prototype.length, type));
     ++expanded_;
     std::vector<SceneField> given = prototype.fields;
     SceneNode instance;
@@ -338,15 +246,19 @@ class SceneParser {
         VKMESH_CHECK(statement(&instance, instance.children, depth + 1));
         continue;
       }
+      if (given_ != nullptr && is_event_mapping()) continue;
       SceneField value;
       value.name = word;
       VKMESH_CHECK(read_value(value, depth + 1));
       for (SceneField& field : given)
         if (field.name == word) field = value;
     }
-    // Names within the body are its own.
+    // Names within the body are its own. Those of PROTOs that are visible are those where it was defined, and
+    // its own, by which it is told where it stands in itself.
     const SceneScanner behind = std::exchange(scan_, prototype.body);
-    const std::size_t visible = std::exchange(visible_prototypes_, prototype.number);
+    Prototype* const innermost = std::exchange(innermost_, &prototype);
+    const std::size_t defined = defined_prototypes_.size();
+    prototype.is_open = true;
     std::map<std::string_view, std::uint32_t> names;
     std::swap(names, defined_);
     const std::vector<SceneField>* const outer = std::exchange(given_, &given);
@@ -358,19 +270,27 @@ class SceneParser {
     Result<void> result = read();
     given_ = outer;
     std::swap(names, defined_);
-    visible_prototypes_ = visible;
+    prototype.is_open = false;
+    while (defined_prototypes_.size() > defined) defined_prototypes_.pop_back();
+    innermost_ = innermost;
     scan_ = behind;
     if (!result) return tl::unexpected<Error>(std::move(result.error()));
-    return nodes.empty() ? kIgnored : nodes.front();
+    return nodes.empty() ? kIgnoredNode : nodes.front();
   }
 
   Result<void> field(std::string_view name, SceneNode& node, std::size_t depth) {
     SceneField value;
     value.name = name;
     VKMESH_CHECK(read_value(value, depth));
+    // Inventor writes ~ for a value that does not count, or behind it.
+    bool is_ignored = value.text == "~";
+    if (!is_ignored) {
+      const SceneScanner behind = scan_;
+      is_ignored = scan_.word() == "~";
+      if (!is_ignored) scan_ = behind;
+    }
     VKMESH_CHECK(skip_connection(depth));
-    // Inventor writes ~ for a value that does not count.
-    if (value.text == "~") return {};
+    if (is_ignored) return {};
     if (std::find(fields_.begin(), fields_.end(), name) == fields_.end()) return {};
     for (SceneField& other : node.fields)
       if (other.name == name) {
@@ -486,9 +406,6 @@ class SceneParser {
            (word == "DEF" || word == "USE" || word == "PROTO" || word == "ROUTE" || ahead.peek() == '{');
   }
 
-  static constexpr std::uint32_t kIgnored = 0;
-  static constexpr std::size_t kAll = ~std::size_t{0};
-
   const Source& source_;
   SceneScanner scan_;
   std::span<const KnownNode> known_;
@@ -496,14 +413,26 @@ class SceneParser {
   IgnoredNodes& ignored_;
   SceneGraph graph_;
   std::map<std::string_view, std::uint32_t> defined_;
-  std::map<std::string_view, Prototype> prototypes_of_;
-  std::size_t visible_prototypes_ = kAll;           ///< Those of lower numbers may be used.
+  std::deque<Prototype> defined_prototypes_;        ///< Never moved, since they name each other.
+  Prototype* innermost_ = nullptr;                  ///< The last that is visible.
   const std::vector<SceneField>* given_ = nullptr;  ///< The fields of the instance that is expanded.
   std::uint64_t expansion_ = 64 * static_cast<std::uint64_t>(source_.bytes.size()) + (std::uint64_t{1} << 22);
   std::size_t statements_ = 0, prototypes_ = 0, routes_ = 0, undefined_ = 0, connections_ = 0, expanded_ = 0;
 };
 
 }  // namespace
+
+std::string SceneField::string() const {
+  if (form == SceneForm::kCharacters) return std::string(text);
+  const std::size_t open = text.find('"');
+  if (open == std::string_view::npos) return {};
+  std::string string;
+  for (std::size_t i = open + 1; i < text.size() && text[i] != '"'; ++i) {
+    if (text[i] == '\\' && i + 1 < text.size()) ++i;
+    string += text[i];
+  }
+  return string;
+}
 
 const SceneField* SceneNode::field(std::string_view name) const {
   for (const SceneField& f : fields)
@@ -542,6 +471,10 @@ std::string IgnoredNodes::text() const {
   return listed > 3 ? text + ", …" : text;
 }
 
+void note_ignored(Notes& notes, std::size_t count, const char* code, const char* what) {
+  if (count > 0) notes.push_back({code, std::to_string(count) + " " + what + " ignored"});
+}
+
 Result<SceneGraph> parse_scene(const Source& source, std::span<const KnownNode> known,
                                std::span<const std::string_view> fields, IgnoredNodes& ignored,
                                Notes& notes) {
@@ -549,131 +482,6 @@ Result<SceneGraph> parse_scene(const Source& source, std::span<const KnownNode> 
   VKMESH_TRY(SceneGraph graph, parser.read());
   parser.add_to(notes);
   return graph;
-}
-
-const char* SceneNumbers::place_of(std::string_view text, std::size_t i) {
-  SceneScanner scan(text);
-  for (std::size_t k = 0; k < i; ++k) static_cast<void>(scan.word());
-  scan.skip();
-  return scan.at();
-}
-
-Result<void> SceneNumbers::tick(const char* at) {
-  farthest_ = std::max(farthest_, at);
-  return source_.tick(farthest_);
-}
-
-/// Calls read(scanner) until the text ends; false from it is an error.
-template <class Read>
-Result<void> SceneNumbers::each(std::string_view text, const char* what, Read&& read) {
-  SceneScanner scan(text);
-  for (std::size_t i = 0;; ++i) {
-    if (Source::due(i)) VKMESH_CHECK(tick(scan.at()));
-    scan.skip();
-    if (scan.at_end()) return {};
-    if (!read(scan))
-      return source_.bad_line(scan.at(),
-                              std::string("expected ") + what + ", found " + TextCursor(scan.rest()).found());
-  }
-}
-
-template <class T>
-Result<const SceneArray<T>*> SceneNumbers::rows(const SceneField* field, unsigned width,
-                                                std::map<const char*, SceneArray<T>>& known) {
-  if (field == nullptr) return nullptr;
-  const auto [found, is_new] = known.try_emplace(field->text.data());
-  SceneArray<T>& array = found->second;
-  if (is_new) {
-    array.text = field->text;
-    VKMESH_CHECK(each(field->text, "a number", [&](SceneScanner& scan) {
-      const SceneScanner before = scan;
-      T value = 0;
-      // What a float cannot hold is no number here, whatever the array keeps.
-      if (!scan.number(value) || !std::isfinite(static_cast<float>(value))) {
-        scan = before;
-        return false;
-      }
-      array.values.push_back(value);
-      return true;
-    }));
-  }
-  if (array.values.size() % width != 0)
-    return source_.bad_line(field->name.data(), "the field " + shown(field->name) + " holds " +
-                                                    std::to_string(array.values.size()) +
-                                                    " numbers, which are not rows of " +
-                                                    std::to_string(width));
-  return &array;
-}
-
-Result<const SceneFloats*> SceneNumbers::floats(const SceneField* field, unsigned width) {
-  return rows(field, width, floats_);
-}
-
-Result<const SceneDoubles*> SceneNumbers::doubles(const SceneField* field, unsigned width) {
-  return rows(field, width, doubles_);
-}
-
-Result<const SceneIndices*> SceneNumbers::indices(const SceneField* field) {
-  if (field == nullptr) return nullptr;
-  const auto [found, is_new] = indices_.try_emplace(field->text.data());
-  SceneIndices& array = found->second;
-  if (is_new) {
-    array.text = field->text;
-    VKMESH_CHECK(each(field->text, "a whole number", [&](SceneScanner& scan) {
-      std::int32_t value = 0;
-      if (!scan.number(value)) return false;
-      array.values.push_back(value);
-      return true;
-    }));
-  }
-  if (array.values.empty() || (array.values.size() == 1 && array.values[0] == -1)) return nullptr;
-  return &array;
-}
-
-Result<const SceneFloats*> SceneNumbers::packed_colors(const SceneField* field) {
-  if (field == nullptr) return nullptr;
-  const auto [found, is_new] = colors_.try_emplace(field->text.data());
-  SceneFloats& array = found->second;
-  if (is_new) {
-    array.text = field->text;
-    VKMESH_CHECK(each(field->text, "a colour as one number", [&](SceneScanner& scan) {
-      const SceneScanner before = scan;
-      std::string_view word = scan.word();
-      const bool hex = word.starts_with("0x") || word.starts_with("0X");
-      if (hex) word.remove_prefix(2);
-      std::uint32_t value = 0;
-      const auto [to, code] = std::from_chars(word.data(), word.data() + word.size(), value, hex ? 16 : 10);
-      if (word.empty() || code != std::errc{} || to != word.data() + word.size()) {
-        scan = before;
-        return false;
-      }
-      for (int shift = 24; shift >= 0; shift -= 8)
-        array.values.push_back(static_cast<float>((value >> shift) & 0xff) / 255.0f);
-      return true;
-    }));
-  }
-  return &array;
-}
-
-Result<void> SceneNumbers::values(const SceneField* field, std::span<double> to) {
-  if (field == nullptr) return {};
-  VKMESH_TRY(const SceneDoubles* array, doubles(field, 1));
-  if (array->values.size() != to.size())
-    return source_.bad_line(field->name.data(), "the field " + shown(field->name) + " holds " +
-                                                    std::to_string(array->values.size()) +
-                                                    " numbers instead of " + std::to_string(to.size()));
-  std::copy(array->values.begin(), array->values.end(), to.begin());
-  return {};
-}
-
-Result<void> SceneNumbers::whole_number(const SceneField* field, std::int64_t& to) {
-  if (field == nullptr) return {};
-  SceneScanner scan(field->text);
-  std::int64_t value = 0;
-  if (!scan.number(value))
-    return source_.bad_line(field->name.data(), "the field " + shown(field->name) + " is no whole number");
-  to = value;
-  return {};
 }
 
 }  // namespace vkmesh::detail

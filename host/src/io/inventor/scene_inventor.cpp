@@ -1,5 +1,7 @@
-// OpenInventor 2 ascii and VRML 1 (Wernecke, The Inventor Mentor, 1994; Bell, Parisi and Pesce, The Virtual
-// Reality Modeling Language, version 1.0): scenes whose nodes change a state that later shapes draw with.
+// OpenInventor 2, as text and binary, and VRML 1 (Wernecke, The Inventor Mentor, 1994; Bell, Parisi and
+// Pesce, The Virtual Reality Modeling Language, version 1.0): scenes whose nodes change a state that later
+// shapes draw with.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -102,6 +104,7 @@ constexpr std::string_view kFields[] = {"whichChild",
                                         "normal",
                                         "texCoord",
                                         "orderedRGBA",
+                                        "rgba",
                                         "normalBinding",
                                         "materialBinding",
                                         "vector",
@@ -175,13 +178,14 @@ struct State {
 
 class InventorReader {
  public:
-  InventorReader(const Source& source, FileFormat format)
+  InventorReader(const Source& source, FileFormat format, FileEncoding encoding)
       : source_(source), numbers_(source), mesh_(source, numbers_) {
     file_.format = format;
+    file_.encoding = encoding;
   }
 
   Result<MeshFile> read() {
-    VKMESH_TRY(graph_, parse_scene(source_, kNodes, kFields, ignored_, file_.notes));
+    VKMESH_TRY(graph_, parse());
     State state;
     for (const std::uint32_t root : graph_.roots) VKMESH_CHECK(visit(root, state, 0));
     VKMESH_TRY(file_.geometry, mesh_.finish(ignored_, file_.notes));
@@ -190,6 +194,16 @@ class InventorReader {
   }
 
  private:
+  Result<SceneGraph> parse() {
+    if (file_.encoding == FileEncoding::kAscii)
+      return parse_scene(source_, kNodes, kFields, ignored_, file_.notes);
+    const std::string_view bytes = source_.bytes;
+    const std::size_t line = std::min(bytes.find_first_of("\r\n"), bytes.size());
+    const bool has_flags = !bytes.substr(0, line).starts_with("#Inventor V2.0");
+    return parse_binary_scene(source_, bytes.data() + std::min(line + 1, bytes.size()), has_flags, kNodes,
+                              kFields, ignored_, file_.notes);
+  }
+
   Result<void> visit_all(const SceneNode& node, State& state, std::size_t depth) {
     for (const std::uint32_t child : node.children) VKMESH_CHECK(visit(child, state, depth + 1));
     return {};
@@ -232,7 +246,7 @@ class InventorReader {
         return primitive(node, state);
       case kInline: {
         const SceneField* name = node.field("name");
-        VKMESH_TRY(const bool read, mesh_.add_inline(node, name == nullptr ? std::string_view() : name->text,
+        VKMESH_TRY(const bool read, mesh_.add_inline(node, name == nullptr ? std::string() : name->string(),
                                                      state.matrix, file_.notes));
         if (!read) ignored_.add(node.type);
         return {};
@@ -367,7 +381,10 @@ class InventorReader {
   }
 
   Result<void> packed(const SceneNode& node, State& state) {
-    VKMESH_TRY(state.color.values, numbers_.packed_colors(node.field("orderedRGBA")));
+    // Version 2.0 has another field, whose first byte is the last of this.
+    const SceneField* ordered = node.field("orderedRGBA");
+    VKMESH_TRY(state.color.values, ordered != nullptr ? numbers_.packed_colors(ordered)
+                                                      : numbers_.packed_colors(node.field("rgba"), true));
     state.color.components = 4;
     state.color.bytes = true;
     return {};
@@ -488,7 +505,13 @@ class InventorReader {
 }  // namespace
 
 Result<MeshFile> parse_inventor(const Source& source, FileFormat format) {
-  return InventorReader(source, format).read();
+  return InventorReader(source, format, FileEncoding::kAscii).read();
+}
+
+Result<MeshFile> parse_binary_inventor(const Source& source) {
+  Source without_lines = source;
+  without_lines.has_lines = false;
+  return InventorReader(without_lines, FileFormat::kInventor, FileEncoding::kBinaryBigEndian).read();
 }
 
 }  // namespace vkmesh::detail

@@ -384,8 +384,8 @@ Result<void> SceneMesh::add_primitive(SceneShape shape, const SceneNode& node, b
   Made& made = found->second;
   if (is_new) {
     ScenePrimitive primitive = make();
-    made.points = {std::move(primitive.points), node.type};
-    made.index = {std::move(primitive.index), node.type};
+    made.points = {std::move(primitive.points), node.type, SceneForm::kText};
+    made.index = {std::move(primitive.index), node.type, SceneForm::kText};
     // The measures of a shape are few bytes: its first use is free.
     budget_ += 4 * (made.points.values.size() + made.index.values.size());
     round_shapes_ += round;
@@ -394,12 +394,12 @@ Result<void> SceneMesh::add_primitive(SceneShape shape, const SceneNode& node, b
   return add_indexed_faces(shape, &made.index);
 }
 
-Result<bool> SceneMesh::add_inline(const SceneNode& node, std::string_view url, const glm::dmat4& matrix,
+Result<bool> SceneMesh::add_inline(const SceneNode& node, const std::string& name, const glm::dmat4& matrix,
                                    Notes& notes) {
   const auto [found, is_new] = made_.try_emplace(&node);
   Made& made = found->second;
   if (is_new) {
-    VKMESH_TRY(made.any, read_inline(node, url, made, notes));
+    VKMESH_TRY(made.any, read_inline(node, name, made, notes));
     budget_ += 4 * (made.points.values.size() + made.index.values.size());
   }
   if (!made.any) return false;
@@ -417,24 +417,7 @@ Result<bool> SceneMesh::add_inline(const SceneNode& node, std::string_view url, 
   return true;
 }
 
-namespace {
-
-/// The first string of a field, without its quotes.
-std::string first_string(std::string_view text) {
-  const std::size_t open = text.find('"');
-  if (open == std::string_view::npos) return {};
-  std::string string;
-  for (std::size_t i = open + 1; i < text.size() && text[i] != '"'; ++i) {
-    if (text[i] == '\\' && i + 1 < text.size()) ++i;
-    string += text[i];
-  }
-  return string;
-}
-
-}  // namespace
-
-Result<bool> SceneMesh::read_inline(const SceneNode& node, std::string_view url, Made& to, Notes& notes) {
-  const std::string name = first_string(url);
+Result<bool> SceneMesh::read_inline(const SceneNode& node, const std::string& name, Made& to, Notes& notes) {
   const auto dropped = [&](const std::string& reason) {
     notes.push_back({"dropped.inline", "the inlined file '" + name.substr(0, 200) + "' ignored: " + reason});
     return false;
@@ -474,7 +457,7 @@ Result<bool> SceneMesh::read_inline(const SceneNode& node, std::string_view url,
   for (const Vec3& p : mesh.points)
     for (int axis = 0; axis < 3; ++axis) to.points.values.push_back(static_cast<double>(p[axis]));
   // Row i of an attribute of corners is that of corner i: its list of rows counts, beside the ends of faces.
-  SceneIndices& in_turn = made_indices_.emplace_back(SceneIndices{{}, node.type});
+  SceneIndices& in_turn = made_indices_.emplace_back(SceneIndices{{}, node.type, SceneForm::kText});
   to.index.text = node.type;
   for (std::size_t f = 0, corner = 0; f < mesh.face_count(); ++f) {
     for (const std::uint32_t point : mesh.face(f)) {
@@ -490,7 +473,7 @@ Result<bool> SceneMesh::read_inline(const SceneNode& node, std::string_view url,
                           const SceneIndices* index) {
       const Channel* channel = find_channel(channels, channel_name);
       if (channel == nullptr || made.values != nullptr || channel->components < components) return;
-      SceneFloats& values = made_floats_.emplace_back(SceneFloats{{}, node.type});
+      SceneFloats& values = made_floats_.emplace_back(SceneFloats{{}, node.type, SceneForm::kText});
       const bool color = channel->name == "color";
       for (std::size_t i = 0; i < channel->scalar_count(); ++i)
         values.values.push_back(color ? color_fraction(*channel, i) : channel_float(*channel, i));

@@ -102,10 +102,10 @@ class SceneMesh {
   /// A shape that is given by its measures; made once for each node. `round`: polygons only come near it.
   [[nodiscard]] Result<void> add_primitive(SceneShape shape, const SceneNode& node, bool round,
                                            const std::function<ScenePrimitive()>& make);
-  /// What the file beside this one holds that a node names, read once for each node. Whether there is one:
-  /// the reason why not goes to the notes.
-  [[nodiscard]] Result<bool> add_inline(const SceneNode& node, std::string_view url, const glm::dmat4& matrix,
-                                        Notes& notes);
+  /// What the file `name` beside this one holds, which a node names, read once for each node. Whether there
+  /// is one: the reason why not goes to the notes.
+  [[nodiscard]] Result<bool> add_inline(const SceneNode& node, const std::string& name,
+                                        const glm::dmat4& matrix, Notes& notes);
 
   /// The mesh, with its notes. Errors: kUnreadable where there is none; the message says what was ignored.
   [[nodiscard]] Result<IndexedFaceSet> finish(const IgnoredNodes& ignored, Notes& notes);
@@ -168,7 +168,8 @@ class SceneMesh {
   std::deque<SceneIndices> made_indices_;
   std::size_t round_shapes_ = 0;
 
-  [[nodiscard]] Result<bool> read_inline(const SceneNode& node, std::string_view url, Made& to, Notes& notes);
+  [[nodiscard]] Result<bool> read_inline(const SceneNode& node, const std::string& name, Made& to,
+                                         Notes& notes);
 };
 
 }  // namespace vkmesh::detail

@@ -165,7 +165,7 @@ class Vrml2Reader {
         return shape(node, matrix);
       case kInline: {
         const SceneField* url = node.field("url");
-        VKMESH_TRY(const bool read, mesh_.add_inline(node, url == nullptr ? std::string_view() : url->text,
+        VKMESH_TRY(const bool read, mesh_.add_inline(node, url == nullptr ? std::string() : url->string(),
                                                      matrix, file_.notes));
         if (!read) ignored_.add(node.type);
         return {};
