@@ -54,6 +54,10 @@ Result<Input> read_triangles(Job& job, const std::string& file) {
   }));
   return job.timed("consolidate", [&]() -> Result<Input> {
     VKMESH_TRY(const IndexedFaceSet polygons, to_indexed_face_set(std::move(read)));
+    if (polygons.face_count() == 0)
+      return fail(ErrorCode::kUnsuitable,
+                  "a point cloud has no faces for the passes: give files of meshes to digest",
+                  {file, {}, {}});
     VKMESH_TRY(Triangulated cut, triangulate(polygons));
     VKMESH_TRY(Consolidated made, consolidate(std::move(cut.mesh), job.options().consolidation));
     return Input{std::move(made.mesh), std::move(made.face_set.points)};

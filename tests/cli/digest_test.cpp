@@ -46,6 +46,23 @@ TEST_CASE("digests are checked against the list that was printed") {
   CHECK(rows_that_say(refused.out, "DIFFERS for 1 of 2 meshes, first " + in) == 1);
 }
 
+TEST_CASE("digest says that a point cloud has no faces, and which file it is") {
+  const Scratch scratch;
+  const std::string in = scratch.file("in.off", off_of(torus(8, 6)));
+  const std::string cloud = scratch.file("cloud.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const std::string list =
+      scratch.file("list.txt", std::string(16, '0') + "  vertex-normals  " + cloud + "\n");
+  for (const std::vector<std::string>& named :
+       {std::vector{cloud}, std::vector{in, cloud}, std::vector<std::string>{"--check", list}}) {
+    std::vector<std::string> arguments = {"digest", "--device", "cpu"};
+    arguments.insert(arguments.end(), named.begin(), named.end());
+    const Outcome outcome = vkmesh_run(arguments);
+    CHECK(outcome.code == 4);
+    CHECK_THAT(outcome.err,
+               Contains(cloud) && Contains("a point cloud has no faces for the passes: give files"));
+  }
+}
+
 TEST_CASE("a digest is that of the bytes: one moved point changes all of them") {
   const Scratch scratch;
   const std::string off = off_of(torus(8, 6));
