@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <vkmesh/mesh/handles.h>
@@ -11,6 +12,8 @@
 
 namespace vkmesh::detail {
 namespace {
+
+constexpr std::size_t kGrain = 1 << 14;
 
 // One kind of defect: how many, and a word on the first.
 struct Defect {
@@ -53,27 +56,33 @@ struct EdgeCounts {
   }
 };
 
+// Counts the edge between the points a and b, and joins its half-edges, the lower halves of `uses`, where
+// they are twins.
+void pair_edge(std::uint32_t a, std::uint32_t b, std::span<const std::uint64_t> uses,
+               std::span<const std::uint32_t> corners, std::span<std::uint32_t> twin, EdgeCounts& counts) {
+  ++counts.edges;
+  if (uses.size() == 1) {
+    ++counts.boundary;
+  } else if (uses.size() > 2) {
+    counts.non_manifold.add([&] { return edge_name(a, b); });
+  } else {
+    const auto h = static_cast<std::uint32_t>(uses[0]), g = static_cast<std::uint32_t>(uses[1]);
+    if (corners[h] == corners[g]) {
+      counts.misoriented.add([&] { return edge_name(a, b); });
+    } else {
+      twin[h] = g;
+      twin[g] = h;
+    }
+  }
+}
+
 // Sorts the records of the points [first, last) and joins the twins among them.
 EdgeCounts pair_edges(EdgeRecords& edges, std::span<const std::uint32_t> corners, std::size_t first,
                       std::size_t last, std::span<std::uint32_t> twin) {
   EdgeCounts counts;
   edges.for_each_group(first, last,
                        [&](std::uint32_t a, std::uint32_t b, std::span<const std::uint64_t> uses) {
-                         ++counts.edges;
-                         const auto h = static_cast<std::uint32_t>(uses[0]);
-                         if (uses.size() == 1) {
-                           ++counts.boundary;
-                         } else if (uses.size() > 2) {
-                           counts.non_manifold.add([&] { return edge_name(a, b); });
-                         } else {
-                           const auto g = static_cast<std::uint32_t>(uses[1]);
-                           if (corners[h] == corners[g]) {
-                             counts.misoriented.add([&] { return edge_name(a, b); });
-                           } else {
-                             twin[h] = g;
-                             twin[g] = h;
-                           }
-                         }
+                         pair_edge(a, b, uses, corners, twin, counts);
                        });
   return counts;
 }
@@ -115,54 +124,12 @@ struct FanCounts {
   }
 };
 
-}  // namespace
-
-Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
-                             std::span<const std::uint32_t> face_offsets) {
-  constexpr std::size_t kGrain = 1 << 14;
-  VKMESH_CHECK(check_face_set(point_count, corners, face_offsets));
-  const std::size_t face_count = face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
-  const auto face = [&](std::size_t f) {
-    return face_offsets.empty() ? corners.subspan(3 * f, 3)
-                                : corners.subspan(face_offsets[f], face_offsets[f + 1] - face_offsets[f]);
-  };
-
-  Matching matching;
+// What the pairs of half-edges leave to find. `corners` are those of faces that are not degenerate.
+void complete(Matching& matching, std::size_t point_count, std::span<const std::uint32_t> all_corners,
+              std::span<const std::uint32_t> corners, std::span<const std::uint32_t> face_offsets,
+              const Defect& degenerate, const EdgeCounts& edges) {
   EdgeDefects& defects = matching.defects;
-  defects.points = point_count;
-  defects.faces = face_count;
-
   Defect vertices;
-  const auto degenerate = parallel_sum<Defect>(face_count, kGrain, [&](std::size_t first, std::size_t last) {
-    Defect defect;
-    for (std::size_t f = first; f < last; ++f)
-      if (is_degenerate(face(f))) defect.add([&] { return "face " + std::to_string(f); });
-    return defect;
-  });
-
-  // Degenerate faces have no part in the surface: the edges are those of the others.
-  const std::span<const std::uint32_t> all_corners = corners;
-  std::vector<std::uint32_t> sound_corners, sound_offsets = {0};
-  if (degenerate.count > 0) {
-    for (std::size_t f = 0; f < face_count; ++f) {
-      if (is_degenerate(face(f))) continue;
-      sound_corners.insert(sound_corners.end(), face(f).begin(), face(f).end());
-      sound_offsets.push_back(static_cast<std::uint32_t>(sound_corners.size()));
-    }
-    corners = sound_corners;
-    face_offsets = sound_offsets;
-  }
-  const std::size_t sound_faces = face_count - degenerate.count;
-
-  matching.twin.assign(corners.size(), kInvalid);
-  EdgeCounts edges;
-  {
-    EdgeRecords records = distribute_edges(point_count, corners, face_offsets, sound_faces);
-    edges = parallel_sum<EdgeCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
-      return pair_edges(records, corners, first, last, matching.twin);
-    });
-  }
-
   if (degenerate.count + edges.non_manifold.count + edges.misoriented.count == 0) {
     matching.leading = leading_half_edges(point_count, corners, matching.twin);
     const auto fans = parallel_sum<FanCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
@@ -204,7 +171,103 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
          "edges whose two faces disagree in orientation");
   append(defects.sentence, vertices, "point where separate fans of faces meet",
          "points where separate fans of faces meet");
+}
+
+}  // namespace
+
+Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                             std::span<const std::uint32_t> face_offsets) {
+  VKMESH_CHECK(check_face_set(point_count, corners, face_offsets));
+  const std::size_t face_count = face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
+  const auto face = [&](std::size_t f) {
+    return face_offsets.empty() ? corners.subspan(3 * f, 3)
+                                : corners.subspan(face_offsets[f], face_offsets[f + 1] - face_offsets[f]);
+  };
+
+  Matching matching;
+  matching.defects.points = point_count;
+  matching.defects.faces = face_count;
+
+  const auto degenerate = parallel_sum<Defect>(face_count, kGrain, [&](std::size_t first, std::size_t last) {
+    Defect defect;
+    for (std::size_t f = first; f < last; ++f)
+      if (is_degenerate(face(f))) defect.add([&] { return "face " + std::to_string(f); });
+    return defect;
+  });
+
+  // Degenerate faces have no part in the surface: the edges are those of the others.
+  const std::span<const std::uint32_t> all_corners = corners;
+  std::vector<std::uint32_t> sound_corners, sound_offsets = {0};
+  if (degenerate.count > 0) {
+    for (std::size_t f = 0; f < face_count; ++f) {
+      if (is_degenerate(face(f))) continue;
+      sound_corners.insert(sound_corners.end(), face(f).begin(), face(f).end());
+      sound_offsets.push_back(static_cast<std::uint32_t>(sound_corners.size()));
+    }
+    corners = sound_corners;
+    face_offsets = sound_offsets;
+  }
+  const std::size_t sound_faces = face_count - degenerate.count;
+
+  matching.twin.assign(corners.size(), kInvalid);
+  EdgeCounts edges;
+  {
+    EdgeRecords records = distribute_edges(point_count, corners, face_offsets, sound_faces);
+    edges = parallel_sum<EdgeCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
+      return pair_edges(records, corners, first, last, matching.twin);
+    });
+  }
+
+  complete(matching, point_count, all_corners, corners, face_offsets, degenerate, edges);
   return matching;
+}
+
+Result<Matching> match_merged_edges(Matching before, std::span<const std::uint32_t> point_of,
+                                    std::size_t point_count, std::span<const std::uint32_t> corners,
+                                    std::span<const std::uint32_t> face_offsets) {
+  const EdgeDefects& defects = before.defects;
+  if (defects.degenerate_faces + defects.non_manifold_edges + defects.misoriented_edges > 0)
+    return match_edges(point_count, corners, face_offsets);
+  std::vector<std::uint8_t> merged(point_count, 0), met(point_count, 0);
+  for (const std::uint32_t p : point_of) merged[p] = std::exchange(met[p], 1);
+
+  struct Use {
+    std::uint64_t edge, half_edge;
+  };
+  std::vector<Use> uses;
+  EdgeCounts edges{defects.edges, defects.boundary_edges, {}, {}};
+  std::size_t paired = 0;
+  for (std::size_t f = 0; f < defects.faces; ++f) {
+    const std::span<const std::uint32_t> face =
+        face_offsets.empty() ? corners.subspan(3 * f, 3)
+                             : corners.subspan(face_offsets[f], face_offsets[f + 1] - face_offsets[f]);
+    if (std::none_of(face.begin(), face.end(), [&](std::uint32_t p) { return merged[p] != 0; })) continue;
+    if (is_degenerate(face)) return match_edges(point_count, corners, face_offsets);
+    for_each_edge(corners, face_offsets, f, f + 1, [&](std::uint32_t h, std::uint32_t a, std::uint32_t b) {
+      if (merged[a] == 0 && merged[b] == 0) return;
+      uses.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), h});
+      paired += before.twin[h] != kInvalid;
+    });
+  }
+  edges.edges -= uses.size() - paired / 2;
+  edges.boundary -= uses.size() - paired;
+  for (const Use& use : uses) before.twin[use.half_edge] = kInvalid;
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.edge, a.half_edge) < std::tie(b.edge, b.half_edge);
+  });
+  std::vector<std::uint64_t> half_edges;
+  for (std::size_t i = 0; i < uses.size();) {
+    const std::uint64_t edge = uses[i].edge;
+    half_edges.clear();
+    for (; i < uses.size() && uses[i].edge == edge; ++i) half_edges.push_back(uses[i].half_edge);
+    pair_edge(static_cast<std::uint32_t>(edge >> 32), static_cast<std::uint32_t>(edge), half_edges, corners,
+              before.twin, edges);
+  }
+  before.defects.points = point_count;
+  before.defects.sentence.clear();
+  before.leading.clear();
+  complete(before, point_count, corners, corners, face_offsets, {}, edges);
+  return before;
 }
 
 }  // namespace vkmesh::detail

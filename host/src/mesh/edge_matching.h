@@ -44,4 +44,11 @@ struct Matching {
 Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
                              std::span<const std::uint32_t> face_offsets);
 
+/// What match_edges() gives for the same faces after points were made one; `before` is what it gave before,
+/// and `point_of` the new number of each point. Only the edges of merged points are sorted, unless faces or
+/// edges have defects. Errors: as match_edges().
+Result<Matching> match_merged_edges(Matching before, std::span<const std::uint32_t> point_of,
+                                    std::size_t point_count, std::span<const std::uint32_t> corners,
+                                    std::span<const std::uint32_t> face_offsets);
+
 }  // namespace vkmesh::detail

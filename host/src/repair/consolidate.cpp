@@ -146,8 +146,8 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
     VKMESH_TRY(welded, detail::weld_boundary(mesh, matching.twin));
     if (welded.merged_points > 0) {
       mesh = std::move(welded.mesh);
-      matching = {};  // before the next takes memory
-      VKMESH_TRY(matching, match(mesh));
+      VKMESH_TRY(matching, detail::match_merged_edges(std::move(matching), welded.point_of,
+                                                      mesh.points.size(), mesh.corners, mesh.face_offsets));
     }
   }
   VKMESH_CHECK(tick(0.1));

@@ -1,5 +1,12 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numeric>
 #include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -230,4 +237,57 @@ TEST_CASE("weld_boundary closes seams, and leaves alone what is closed") {
   REQUIRE(beside);
   CHECK(beside->report.welded_points == 0);
   CHECK(consolidate(cubes, {.weld = WeldOptions{}})->report.welded_points > 0);
+}
+
+TEST_CASE("weld_boundary joins what a search over all pairs of points joins") {
+  std::mt19937 random(21);
+  std::size_t welded = 0, still_open = 0;
+  for (int round = 0; round < 200; ++round) {
+    // A closed surface without some of its faces, with copies of points at some corners.
+    const IndexedFaceSet whole = round % 2 == 0 ? test::icosphere(1) : test::torus(7, 5);
+    IndexedFaceSet mesh;
+    mesh.points = whole.points;
+    const auto dropped = random() % 2 * 5, copied = random() % 40;
+    for (std::size_t f = 0; f < whole.face_count(); ++f) {
+      if (random() % 100 < dropped) continue;
+      for (const std::uint32_t p : whole.face(f)) {
+        mesh.corners.push_back(p);
+        if (random() % 100 >= copied) continue;
+        mesh.corners.back() = static_cast<std::uint32_t>(mesh.points.size());
+        mesh.points.push_back(whole.points[p]);
+      }
+    }
+    const auto edges_of = [&](const auto& number) {
+      std::map<std::pair<std::size_t, std::size_t>, int> uses;
+      for (std::size_t c = 0; c < mesh.corners.size(); c += 3)
+        for (std::size_t i = 0; i < 3; ++i)
+          ++uses[std::minmax<std::size_t>(number[mesh.corners[c + i]],
+                                          number[mesh.corners[c + (i + 1) % 3]])];
+      return uses;
+    };
+    std::vector<std::size_t> number(mesh.points.size());
+    std::iota(number.begin(), number.end(), std::size_t{0});
+    std::set<std::size_t> open;
+    for (const auto& [edge, uses] : edges_of(number))
+      if (uses == 1) open.insert({edge.first, edge.second});
+    std::size_t joined = 0;
+    for (const std::size_t p : open)
+      for (const std::size_t q : open) {
+        if (mesh.points[q] != mesh.points[p]) continue;
+        number[p] = q;
+        joined += q < p;
+        break;
+      }
+    const auto after = edges_of(number);
+    const auto closed = consolidate(mesh, {.weld_boundary = true});
+    REQUIRE(closed);
+    CHECK(closed->report.welded_points == joined);
+    CHECK(closed->report.edges == after.size());
+    CHECK(closed->report.boundary_edges == static_cast<std::size_t>(std::ranges::count_if(
+                                               after, [](const auto& e) { return e.second == 1; })));
+    welded += joined;
+    still_open += closed->report.boundary_edges;
+  }
+  CHECK(welded > 1000);
+  CHECK(still_open > 100);
 }
