@@ -1,6 +1,8 @@
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -368,6 +370,107 @@ TEST_CASE("glTF nodes place meshes, and mirrored ones turn their faces", "[io][g
   CHECK(refused(R"({"mesh":3})").find("mesh 3 of 1") != std::string::npos);
   CHECK(refused(R"({"mesh":0,"matrix":[1,2,3]})").find("wrong size") != std::string::npos);
   CHECK(refused(R"({"mesh":0,"scale":[1e300,1,1]})").find("not finite") != std::string::npos);
+}
+
+namespace {
+
+/// A matrix of doubles that acts on columns, by rows.
+using Matrix = std::array<std::array<double, 4>, 4>;
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix c{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j)
+      for (std::size_t k = 0; k < 4; ++k) c[i][j] += a[i][k] * b[k][j];
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("glTF skins pose points as the sum over their joints, in double precision", "[io][gltf][oracle]") {
+  std::mt19937 random(8);
+  const auto real = [&](double low, double high) {
+    return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
+  };
+  for (int round = 0; round < 50; ++round) {
+    // Joints below one another or below a node beside them, and a node with the mesh whose place does not
+    // count.
+    const std::size_t joints = 2 + random() % 4, points = 12;
+    std::string nodes = R"({"mesh":0,"skin":0,"translation":[77,-5,3],"scale":[3,3,3]})", names;
+    std::vector<Matrix> world(joints), inverse(joints);
+    std::vector<float> matrices;
+    const std::size_t above = random() % 2;  // A chain below the first joint, or all side by side.
+    for (std::size_t j = 0; j < joints; ++j) {
+      const float x = real(-1, 1), y = real(-1, 1), z = real(-1, 1), w = real(-1, 1);
+      const float n = std::sqrt(x * x + y * y + z * z + w * w);
+      const std::array<float, 4> q = {x / n, y / n, z / n, w / n};
+      const std::array<float, 3> t = {real(-5, 5), real(-5, 5), real(-5, 5)},
+                                 s = {real(0.5, 2), real(0.5, 2), real(0.5, 2)};
+      std::ostringstream node;
+      node.precision(9);
+      node << R"(,{"rotation":[)" << q[0] << "," << q[1] << "," << q[2] << "," << q[3]
+           << R"(],"translation":[)" << t[0] << "," << t[1] << "," << t[2] << R"(],"scale":[)" << s[0] << ","
+           << s[1] << "," << s[2] << "]";
+      if (above == 1 && j + 1 < joints) node << R"(,"children":[)" << j + 2 << "]";
+      nodes += node.str() + "}";
+      names += (j > 0 ? "," : "") + std::to_string(j + 1);
+      const double a = q[0], b = q[1], c = q[2], d = q[3];
+      const double turn[3][3] = {{1 - 2 * (b * b + c * c), 2 * (a * b - c * d), 2 * (a * c + b * d)},
+                                 {2 * (a * b + c * d), 1 - 2 * (a * a + c * c), 2 * (b * c - a * d)},
+                                 {2 * (a * c - b * d), 2 * (b * c + a * d), 1 - 2 * (a * a + b * b)}};
+      Matrix local{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) local[i][k] = turn[i][k] * s[k];
+        local[i][3] = t[i];
+      }
+      local[3][3] = 1;
+      world[j] = above == 1 && j > 0 ? product(world[j - 1], local) : local;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 4; ++k) inverse[j][i][k] = real(-2, 2);
+      inverse[j][3] = {0, 0, 0, 1};
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t i = 0; i < 4; ++i) matrices.push_back(static_cast<float>(inverse[j][i][k]));
+    }
+    std::vector<float> positions, weights;
+    std::vector<std::uint8_t> used;
+    std::vector<DVec3> expected;
+    for (std::size_t p = 0; p < points; ++p) {
+      const std::array<double, 4> at = {real(-3, 3), real(-3, 3), real(-3, 3), 1};
+      for (std::size_t axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(at[axis]));
+      // Quarters, so that they add up to 1 exactly.
+      std::array<int, 4> quarters = {0, 0, 0, 0};
+      for (int i = 0; i < 4; ++i) ++quarters[random() % 4];
+      DVec3 sum(0.0);
+      for (const int quarter : quarters) {
+        const std::size_t joint = random() % joints;
+        used.push_back(static_cast<std::uint8_t>(joint));
+        weights.push_back(static_cast<float>(quarter) / 4);
+        const Matrix pose = product(world[joint], inverse[joint]);
+        for (int axis = 0; axis < 3; ++axis)
+          for (std::size_t k = 0; k < 4; ++k)
+            sum[axis] += quarter / 4.0 * pose[static_cast<std::size_t>(axis)][k] * at[k];
+      }
+      expected.push_back(sum);
+    }
+    Builder b;
+    const int position = b.positions(positions);
+    const int joint = b.accessor(b.view(bytes_of(used)), 5121, points, "VEC4");
+    const int weight = b.floats(weights, "VEC4", 4);
+    const int bind = b.floats(matrices, "MAT4", 16);
+    std::string roots = "0,1";
+    for (std::size_t j = 1; above == 0 && j < joints; ++j) roots += "," + std::to_string(j + 1);
+    const IndexedFaceSet mesh = parse(
+        b.file(primitive(R"("attributes":{"POSITION":)" + std::to_string(position) + R"(,"JOINTS_0":)" +
+                         std::to_string(joint) + R"(,"WEIGHTS_0":)" + std::to_string(weight) + "}") +
+               R"(,"nodes":[)" + nodes + R"(],"skins":[{"joints":[)" + names + R"(],"inverseBindMatrices":)" +
+               std::to_string(bind) + R"(}],"scenes":[{"nodes":[)" + roots + "]}]"),
+        "a.glb");
+    REQUIRE(mesh.points.size() == points);
+    for (std::size_t p = 0; p < points; ++p)
+      for (int axis = 0; axis < 3; ++axis)
+        CHECK(static_cast<double>(mesh.points[p][axis]) ==
+              Approx(expected[p][axis]).epsilon(1e-5).margin(1e-4));
+  }
 }
 
 TEST_CASE("glTF primitives that share accessors share points", "[io][gltf]") {

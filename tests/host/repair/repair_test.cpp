@@ -288,6 +288,50 @@ TEST_CASE("the fewer faces are flipped to agree; of as many, so that a closed co
   }
 }
 
+TEST_CASE("in each of several surfaces the fewer faces turn, whichever they are", "[repair]") {
+  std::mt19937 random(23);
+  const std::vector<IndexedFaceSet> parts = {test::icosphere(1), test::torus(6, 5), test::grid(4, 3),
+                                             test::cylinder(3, 7), test::quad_cube()};
+  for (int round = 0; round < 100; ++round) {
+    IndexedFaceSet mesh;
+    mesh.face_offsets = {0};
+    std::size_t fewer = 0;
+    std::vector<bool> right;  // Whether each face runs the way of the more.
+    for (int n = 0; n < 3; ++n) {
+      const IndexedFaceSet& part = parts[random() % parts.size()];
+      const std::size_t faces = part.face_count();
+      std::vector<bool> turned(faces);
+      const auto share = random() % 101;
+      std::size_t count = 0;
+      for (std::size_t f = 0; f < faces; ++f) turned[f] = random() % 100 < share;
+      count = static_cast<std::size_t>(std::ranges::count(turned, true));
+      if (2 * count == faces)
+        turned[0] = !turned[0], count = static_cast<std::size_t>(std::ranges::count(turned, true));
+      fewer += std::min(count, faces - count);
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      mesh.points.insert(mesh.points.end(), part.points.begin(), part.points.end());
+      for (std::size_t f = 0; f < faces; ++f) {
+        std::vector<std::uint32_t> face(part.face(f).begin(), part.face(f).end());
+        if (turned[f]) std::reverse(face.begin(), face.end());
+        for (const std::uint32_t p : face) mesh.corners.push_back(first + p);
+        mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
+        right.push_back(turned[f] == (2 * count > faces));
+      }
+    }
+    mesh.normalize_offsets();
+    const Consolidated result = repaired(mesh);
+    CHECK(result.report.flipped_faces == fewer);
+    REQUIRE(result.face_set.face_count() == mesh.face_count());
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      const auto before = mesh.face(f), after = result.face_set.face(f);
+      // The same cyclic order where it was right, else the reverse of it.
+      const auto at = std::ranges::find(after, before[0]) - after.begin();
+      const std::size_t n = before.size(), next = (static_cast<std::size_t>(at) + 1) % n;
+      CHECK((after[next] == before[1]) == right[f]);
+    }
+  }
+}
+
 TEST_CASE("a cavity with one face turned stays a cavity", "[repair]") {
   IndexedFaceSet mesh = test::cube();
   const IndexedFaceSet outer = mesh;
