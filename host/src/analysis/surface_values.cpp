@@ -207,7 +207,7 @@ Result<std::vector<float>> point_spacing(std::span<const Vec3> points, unsigned 
   return detail::catching([&]() -> Result<std::vector<float>> {
     std::vector<float> spacing(points.size(), 0.0f);
     if (points.size() < 2 || neighbours == 0) return spacing;
-    const detail::KdTree tree(points);
+    const detail::KdTree<Vec3> tree(points);
     std::vector<float> heap, positive;
     for (std::size_t v = 0; v < points.size(); ++v) {
       spacing[v] = std::sqrt(tree.kth_squared_distance(static_cast<std::uint32_t>(v), neighbours, heap));

@@ -2,120 +2,20 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include <vkmesh/math/bounds.h>
 #include <vkmesh/math/vec.h>
 #include <vkmesh/mesh/handles.h>
 
+#include "spatial/kd_tree.h"
+
 namespace vkmesh::detail {
-
-/// Corners of a polygon that may lie inside its ears, in a kd-tree (J. L. Bentley, "Multidimensional binary
-/// search trees used for associative searching", 1975). Nodes without any are passed over.
-class BlockTree {
- public:
-  struct Point2 {
-    double x, y;
-    friend bool operator==(const Point2&, const Point2&) = default;
-  };
-
-  /// Those of the points where `blocks` is not 0. O(n log n).
-  void build(const std::vector<Point2>& points, const std::vector<char>& blocks) {
-    order_.resize(points.size());
-    place_.resize(points.size());
-    std::iota(order_.begin(), order_.end(), 0u);
-    leaves_ = 1;
-    while (leaves_ * kLeaf < points.size()) leaves_ *= 2;
-    nodes_.assign(2 * leaves_, Node{});
-    split(points, 1, 0, points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i)
-      if (blocks[i]) change(i, 1);
-  }
-
-  void add(std::uint32_t point) { change(point, 1); }
-  void remove(std::uint32_t point) { change(point, -1); }
-
-  /// Whether hits(point) holds for any of those in a box around a triangle whose corners run
-  /// counter-clockwise.
-  template <class Hits>
-  bool any(const Point2& a, const Point2& b, const Point2& c, const std::vector<char>& blocks,
-           Hits&& hits) const {
-    std::array<std::uint32_t, 64> open;
-    std::size_t count = 0;
-    open[count++] = 1;
-    while (count > 0) {
-      const std::uint32_t at = open[--count];
-      const Node& node = nodes_[at];
-      if (node.count == 0 || lies_beyond(node, a, b) || lies_beyond(node, b, c) || lies_beyond(node, c, a))
-        continue;
-      if (at < leaves_) {
-        open[count++] = 2 * at;
-        open[count++] = 2 * at + 1;
-        continue;
-      }
-      for (std::uint32_t i = node.first; i < node.last; ++i)
-        if (blocks[order_[i]] && hits(order_[i])) return true;
-    }
-    return false;
-  }
-
- private:
-  static constexpr std::size_t kLeaf = 8;
-  struct Node {
-    Point2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    std::uint32_t first = 0, last = 0;  ///< A leaf's points in order_.
-    std::int32_t count = 0;             ///< Corners that block below it.
-  };
-
-  /// Whether the whole box is right of the line from p to q. Rounding may only make it say no: what it passes
-  /// over, the exact same sum for each point would pass over, too, or the margin of its terms decides.
-  static bool lies_beyond(const Node& node, const Point2& p, const Point2& q) {
-    const double dx = q.x - p.x, dy = q.y - p.y;
-    const double x = dy > 0 ? node.low.x : node.high.x, y = dx > 0 ? node.high.y : node.low.y;
-    const double left = dx * (y - p.y), right = dy * (x - p.x);
-    return left - right < -1e-12 * (std::abs(left) + std::abs(right));
-  }
-
-  void split(const std::vector<Point2>& points, std::uint32_t at, std::size_t first, std::size_t last) {
-    Node& node = nodes_[at];
-    node.first = static_cast<std::uint32_t>(first);
-    node.last = static_cast<std::uint32_t>(last);
-    for (std::size_t i = first; i < last; ++i) {
-      const Point2& p = points[order_[i]];
-      node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y)};
-      node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y)};
-    }
-    if (at >= leaves_) {
-      for (std::size_t i = first; i < last; ++i) place_[order_[i]] = at;
-      return;
-    }
-    const bool by_x = node.high.x - node.low.x > node.high.y - node.low.y;
-    const std::size_t middle = first + (last - first) / 2;
-    const auto begin = order_.begin();
-    std::nth_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
-                     begin + static_cast<std::ptrdiff_t>(last), [&](std::uint32_t i, std::uint32_t j) {
-                       const double u = by_x ? points[i].x : points[i].y,
-                                    v = by_x ? points[j].x : points[j].y;
-                       return u < v || (u == v && i < j);
-                     });
-    split(points, 2 * at, first, middle);
-    split(points, 2 * at + 1, middle, last);
-  }
-
-  void change(std::uint32_t point, std::int32_t by) {
-    for (std::uint32_t at = place_[point]; at > 0; at /= 2) nodes_[at].count += by;
-  }
-
-  std::vector<std::uint32_t> order_, place_;  ///< place_: the leaf of each point.
-  std::vector<Node> nodes_;                   ///< The children of node i are 2i and 2i + 1.
-  std::size_t leaves_ = 1;
-};
 
 /// Ear clipping, see triangulate(). Cuts one polygon after another; keeps its arrays between them.
 class EarClipper {
@@ -138,7 +38,7 @@ class EarClipper {
     for (std::uint32_t i = 0; i < n; ++i) blocks_[i] = area(i) <= 0;
     proper_.resize(n);
     uses_tree_ = n > kSmall;
-    if (uses_tree_) tree_.build(flat_, blocks_);
+    if (uses_tree_) build_tree();
     judge_all(0);
 
     const auto is_taken = [&](std::uint32_t ear) {
@@ -172,7 +72,6 @@ class EarClipper {
   }
 
  private:
-  using Point2 = BlockTree::Point2;
   static constexpr std::uint32_t kSmall = 48;  ///< Corners up to which a look at each is the fastest.
 
   /// The corner with the lowest point or, of several, with the lowest one behind it.
@@ -185,16 +84,38 @@ class EarClipper {
   }
 
   void unblock(std::uint32_t i) {
-    if (blocks_[i] && uses_tree_) tree_.remove(i);
+    if (blocks_[i] && uses_tree_) count_blocking(i, -1);
     blocks_[i] = 0;
   }
   void block(std::uint32_t i) {
-    if (!blocks_[i] && uses_tree_) tree_.add(i);
+    if (!blocks_[i] && uses_tree_) count_blocking(i, 1);
     blocks_[i] = 1;
   }
 
+  void build_tree() {
+    tree_.build(flat_);
+    leaf_.resize(flat_.size());
+    for (std::size_t node = tree_.first_leaf(); node < tree_.node_bound(); ++node)
+      for (const std::uint32_t i : tree_.points_in(node)) leaf_[i] = node;
+    blocking_.assign(tree_.node_bound(), 0);
+    for (std::uint32_t i = 0; i < flat_.size(); ++i)
+      if (blocks_[i]) count_blocking(i, 1);
+  }
+  void count_blocking(std::uint32_t i, int by) {
+    for (std::size_t node = leaf_[i]; node > 0; node /= 2) blocking_[node] += by;
+  }
+
+  /// Whether the whole box is right of the line from p to q. Rounding may only make it say no: what it passes
+  /// over, the exact same sum for each point would pass over, too, or the margin of its terms decides.
+  static bool lies_beyond(const DBounds& box, const DVec3& p, const DVec3& q) {
+    const double dx = q.x - p.x, dy = q.y - p.y;
+    const double x = dy > 0 ? box.low.x : box.high.x, y = dx > 0 ? box.high.y : box.low.y;
+    const double left = dx * (y - p.y), right = dy * (x - p.x);
+    return left - right < -1e-12 * (std::abs(left) + std::abs(right));
+  }
+
   /// Twice the signed area of a triangle: positive when a, b, c run counter-clockwise.
-  static double area2(const Point2& a, const Point2& b, const Point2& c) {
+  static double area2(const DVec3& a, const DVec3& b, const DVec3& c) {
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   }
 
@@ -217,7 +138,7 @@ class EarClipper {
     flat_.clear();
     for (const std::uint32_t c : corners) {
       const DVec3 p = DVec3(points[c]) - origin;
-      flat_.push_back({p[first], p[second]});
+      flat_.emplace_back(p[first], p[second], 0);
     }
   }
 
@@ -269,26 +190,33 @@ class EarClipper {
     if (kind == Ear::kFlat) return area(i) == 0;
     if (blocks_[i]) return false;
     const std::uint32_t before = previous_[i], after = next_[i];
-    const Point2 a = flat_[before], b = flat_[i], c = flat_[after];
+    const DVec3 a = flat_[before], b = flat_[i], c = flat_[after];
     const auto is_inside = [&](std::uint32_t j) {
-      const Point2 p = flat_[j];
+      const DVec3 p = flat_[j];
       const double ab = area2(a, b, p), bc = area2(b, c, p), ca = area2(c, a, p);
       return kind == Ear::kTouched ? (ab > 0 && bc > 0 && ca > 0)
                                    : (ab >= 0 && bc >= 0 && ca >= 0 && !(p == a) && !(p == b) && !(p == c));
     };
     if (uses_tree_)
-      return !tree_.any(a, b, c, blocks_,
-                        [&](std::uint32_t j) { return j != before && j != after && is_inside(j); });
+      return !tree_.any(
+          [&](std::size_t node, const DBounds& box) {
+            return blocking_[node] == 0 || lies_beyond(box, a, b) || lies_beyond(box, b, c) ||
+                   lies_beyond(box, c, a);
+          },
+          [&](std::uint32_t j) { return blocks_[j] && j != before && j != after && is_inside(j); });
     for (std::uint32_t j = next_[after]; j != before; j = next_[j])
       if (blocks_[j] && is_inside(j)) return false;
     return true;
   }
 
-  std::vector<Point2> flat_;
+  std::vector<DVec3> flat_;  ///< Projected, with z = 0.
   std::vector<std::uint32_t> next_, previous_;
   std::vector<char> blocks_;  ///< Corners that are not convex: only they can lie inside an ear.
   std::vector<char> proper_;  ///< Corners that are proper ears.
-  BlockTree tree_;            ///< The corners that block, in large polygons.
+  // In large polygons: the corners, the leaf of each, and how many below each node block.
+  KdTree<DVec3> tree_;
+  std::vector<std::size_t> leaf_;
+  std::vector<int> blocking_;
   bool uses_tree_ = false;
 };
 
