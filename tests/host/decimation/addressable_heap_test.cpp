@@ -112,17 +112,4 @@ TEST_CASE("equal priorities leave an addressable heap by id, and -0 equals 0", "
   }
 }
 
-TEST_CASE("the top's successor is among those an addressable heap names", "[heap]") {
-  std::mt19937 random(3);
-  AddressableHeap<> heap(500);
-  for (std::uint32_t i = 0; i < 500; ++i) heap.append(i, static_cast<float>(random() % 1000));
-  heap.heapify();
-  while (heap.size() > 1) {
-    std::vector<std::uint32_t> named;
-    heap.for_each_near_top([&](std::uint32_t id) { named.push_back(id); });
-    heap.pop();
-    CHECK(std::find(named.begin(), named.end(), heap.top()) != named.end());
-  }
-}
-
 }  // namespace vkmesh

@@ -32,13 +32,6 @@ class AddressableHeap {
   [[nodiscard]] std::uint32_t top() const { return id_of(entries_.front()); }
   [[nodiscard]] float top_priority() const { return priority_of(entries_.front()); }
 
-  /// Calls f(id) for the entries next to the top: the top's successor is one of them unless a change outruns
-  /// it. For fetching ahead. O(1).
-  template <class F>
-  void for_each_near_top(F&& f) const {
-    for (std::size_t i = 1; i < std::min<std::size_t>(Arity + 1, entries_.size()); ++i) f(id_of(entries_[i]));
-  }
-
   /// Adds an entry at the end without keeping the order; `heapify` restores it. The id must be absent, the
   /// priority no NaN. O(1).
   void append(std::uint32_t id, float priority) {
