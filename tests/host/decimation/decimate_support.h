@@ -15,6 +15,7 @@
 #include <vkmesh/decimation/decimate.h>
 
 #include "decimation/vertex_record.h"
+#include "mesh/edit_mesh_support.h"
 #include "support/shapes.h"
 
 namespace vkmesh::test {
@@ -46,19 +47,10 @@ inline std::size_t sum(const CountByReason& counts) {
 
 /// As decimation begins with it: quadrics of nothing, and the apex nowhere.
 inline detail::CollapseMesh collapse_mesh_of(const IndexedFaceSet& set) {
-  using detail::CollapseMesh;
-  CollapseMesh mesh;
-  std::vector<std::uint32_t> leading;
-  const auto face_of = [&](std::size_t f) {
-    const auto corners = set.face(f);
-    return CollapseMesh::Face{{corners[0], corners[1], corners[2]}, 0, {}, static_cast<std::uint32_t>(f)};
-  };
-  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == CollapseMesh::Built::kDone);
+  auto mesh = edit_mesh_of<detail::VertexRecord>(set);
   for (std::uint32_t v = 0; v < set.points.size(); ++v) {
-    mesh.vertices[v] = {};
     mesh.vertices[v].position = {set.points[v].x, set.points[v].y, set.points[v].z};
     mesh.vertices[v].source = v;
-    mesh.vertices[v].leading = leading[v];
   }
   mesh.vertices[mesh.apex()] = {};
   mesh.vertices[mesh.apex()].position.fill(std::numeric_limits<float>::quiet_NaN());

@@ -17,6 +17,7 @@
 
 #include "mesh/edit/link_condition.h"
 #include "mesh/edit/one_ring.h"
+#include "mesh/edit_mesh_support.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
@@ -40,16 +41,7 @@ std::uint32_t face_tags(std::uint32_t source) {
 }
 
 Mesh mesh_of(const IndexedFaceSet& set) {
-  Mesh mesh;
-  std::vector<std::uint32_t> leading;
-  const auto face_of = [&](std::size_t f) {
-    const auto c = set.face(f);
-    const auto source = static_cast<std::uint32_t>(f);
-    return Face{{c[0], c[1], c[2]}, face_tags(source), {}, source};
-  };
-  REQUIRE(mesh.build(set.points.size(), set.face_count(), face_of, leading) == Mesh::Built::kDone);
-  for (std::size_t v = 0; v < leading.size(); ++v) mesh.vertices[v].leading = leading[v];
-  return mesh;
+  return test::edit_mesh_of<Vertex>(set, face_tags);
 }
 
 template <class F>

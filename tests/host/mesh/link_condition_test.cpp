@@ -8,13 +8,16 @@
 
 #include <catch2/catch.hpp>
 
-#include "decimation/decimate_support.h"
+#include "mesh/edit_mesh_support.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-using detail::CollapseMesh;
+struct Vertex {
+  std::uint32_t leading;
+};
+using Mesh = detail::EditMesh<Vertex>;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The closed complex, by definition: the vertices and edges of the link of each vertex.
@@ -22,7 +25,7 @@ struct Links {
   std::vector<std::set<std::uint32_t>> vertices;
   std::vector<std::set<Pair>> edges;
 
-  explicit Links(const CollapseMesh& mesh) : vertices(mesh.apex() + 1), edges(mesh.apex() + 1) {
+  explicit Links(const Mesh& mesh) : vertices(mesh.apex() + 1), edges(mesh.apex() + 1) {
     for (std::uint32_t f = 0; f < mesh.half_edge_bound() / 4; ++f)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto& origin = mesh.face(4 * f).origin;
@@ -45,7 +48,7 @@ struct Links {
 };
 
 /// The neighbours of the origin of h but its target, from beyond it.
-std::vector<std::uint32_t> ring_beyond(const CollapseMesh& mesh, std::uint32_t h) {
+std::vector<std::uint32_t> ring_beyond(const Mesh& mesh, std::uint32_t h) {
   std::vector<std::uint32_t> ring;
   for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out))
     ring.push_back(mesh.target(out));
@@ -54,13 +57,13 @@ std::vector<std::uint32_t> ring_beyond(const CollapseMesh& mesh, std::uint32_t h
 
 }  // namespace
 
-TEST_CASE("the link condition is that of the closed complex", "[decimate]") {
+TEST_CASE("the link condition is that of the closed complex", "[mesh][edit]") {
   std::size_t allowed = 0, forbidden = 0;
   std::vector<std::uint32_t> scratch;
   for (const IndexedFaceSet& shape :
        {test::tetrahedron(), test::icosphere(0), test::icosphere(1), test::torus(3, 3), test::torus(3, 5),
         test::torus(4, 7), test::grid(1, 1), test::grid(1, 4), test::grid(3, 5)}) {
-    const CollapseMesh mesh = test::collapse_mesh_of(shape);
+    const Mesh mesh = test::edit_mesh_of<Vertex>(shape);
     const Links links(mesh);
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
       for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h) {
@@ -74,9 +77,9 @@ TEST_CASE("the link condition is that of the closed complex", "[decimate]") {
   CHECK(forbidden > 50);
 }
 
-TEST_CASE("edges that are there are found from either end", "[decimate]") {
+TEST_CASE("edges that are there are found from either end", "[mesh][edit]") {
   for (const IndexedFaceSet& shape : {test::icosphere(0), test::torus(4, 7), test::grid(3, 5)}) {
-    const CollapseMesh mesh = test::collapse_mesh_of(shape);
+    const Mesh mesh = test::edit_mesh_of<Vertex>(shape);
     const Links links(mesh);
     for (std::uint32_t p = 0; p < mesh.apex(); ++p)
       for (std::uint32_t q = 0; q < mesh.apex(); ++q)
@@ -84,8 +87,8 @@ TEST_CASE("edges that are there are found from either end", "[decimate]") {
   }
 }
 
-TEST_CASE("the tip of a tetrahedron is one, and no other vertex of three faces", "[decimate]") {
-  const auto is_tip = [](const CollapseMesh& mesh, std::uint32_t v) {
+TEST_CASE("the tip of a tetrahedron is one, and no other vertex of three faces", "[mesh][edit]") {
+  const auto is_tip = [](const Mesh& mesh, std::uint32_t v) {
     std::vector<std::uint32_t> edges;
     std::uint32_t h = mesh.vertices[v].leading;
     do {
@@ -94,12 +97,12 @@ TEST_CASE("the tip of a tetrahedron is one, and no other vertex of three faces",
     } while (h != mesh.vertices[v].leading);
     return detail::is_tip_of_tetrahedron(mesh, edges);
   };
-  CHECK(is_tip(test::collapse_mesh_of(test::tetrahedron()), 0));
-  CHECK(!is_tip(test::collapse_mesh_of(test::icosphere(0)), 0));
+  CHECK(is_tip(test::edit_mesh_of<Vertex>(test::tetrahedron()), 0));
+  CHECK(!is_tip(test::edit_mesh_of<Vertex>(test::icosphere(0)), 0));
   // A vertex within a triangle, and one triangle less of a tetrahedron.
   IndexedFaceSet open = test::tetrahedron();
   open.corners.resize(9);
-  const CollapseMesh mesh = test::collapse_mesh_of(open);
+  const Mesh mesh = test::edit_mesh_of<Vertex>(open);
   for (std::uint32_t v = 0; v < 4; ++v) CHECK(!is_tip(mesh, v));
 }
 
