@@ -19,11 +19,11 @@
 #include "base/parallel.h"
 #include "base/prefetch.h"
 #include "decimation/collapse_neighbourhood.h"
+#include "decimation/collapse_operator.h"
 #include "decimation/cost/attribute_quadrics.h"
 #include "decimation/cost/edge_batch.h"
 #include "decimation/cost/placements.h"
 #include "decimation/decimation_state.h"
-#include "decimation/edge_merger.h"
 #include "decimation/legality/criteria.h"
 #include "decimation/legality/judge.h"
 #include "decimation/legality/local_change.h"
@@ -76,7 +76,7 @@ class EdgeCollapses {
     static constexpr double kFarthest2 = 1.75, kFarthestAtBoundary2 = 2.25;
   };
 
-  explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices), merger_(mesh) {}
+  explicit EdgeCollapses(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices), operator_(mesh) {}
 
   void work_on(Share& share) { share_ = &share; }
 
@@ -200,8 +200,7 @@ class EdgeCollapses {
   }
 
  private:
-  using Merger = EdgeMerger<kAttributes>;
-  using Merge = typename Merger::Merge;
+  using Operator = CollapseOperator<kAttributes>;
 
   static constexpr std::size_t kFirstFaces = 1 << 12;
   // Edges of so many faces, and from where to where they go.
@@ -253,9 +252,10 @@ class EdgeCollapses {
       for (std::size_t i = 0; i < edges.size(); ++i) {
         const VertexRecord &p = vertices_[mesh_.origin(edges[i])], &q = vertices_[mesh_.target(edges[i])];
         if (share_->state.criteria->ranks_by_faces())
-          record_collapse(change, mesh_, edges[i],
-                          Merger::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}),
-                          kManyEdges);
+          record_collapse(
+              change, mesh_, edges[i],
+              Operator::place_of(p, q, batch.end[i], {batch.x[0][i], batch.x[1][i], batch.x[2][i]}),
+              kManyEdges);
         else
           record_length(change, mesh_, edges[i]);
         ranks[i] = share_->state.criteria->cost(batch.cost[i], p.weight + q.weight, change);
@@ -392,7 +392,7 @@ class EdgeCollapses {
     }
   }
 
-  /// Whether the collapse of the edge around which the merger has looked may move points too far.
+  /// Whether the collapse of the edge that was looked at last may move points too far.
   [[nodiscard]] bool watches_distance() const {
     return share_->cost_of_distance > 0 &&
            (!share_->only_at_boundary || (around().flags() & VertexRecord::kLocked) != 0);
@@ -403,7 +403,7 @@ class EdgeCollapses {
   [[nodiscard]] std::optional<float> cost_of_drift(const Due& due, std::uint32_t p, std::uint32_t q) {
     if (Placement::kByCriteria || !watches_distance()) return std::nullopt;
     const float allowed = std::max(due.cost, share_->queue.level()) / share_->cost_of_distance;
-    const float distance2 = merger_.squared_distance(due, p, q, allowed);
+    const float distance2 = operator_.squared_distance(due, p, q, allowed);
     const float cost = distance2 * share_->cost_of_distance;
     if (!(distance2 > allowed) || share_->queue.is_due(due.half_edge, cost)) return std::nullopt;
     return cost;
@@ -437,7 +437,7 @@ class EdgeCollapses {
 
   /// The collapse of edge i of a batch, as judge() takes it. It looks around when it comes to
   /// the link condition.
-  struct Change : Merger::Change {
+  struct Change : Operator::Change {
     EdgeCollapses& self;
     const Pending& batch;
     std::size_t i;
@@ -450,11 +450,11 @@ class EdgeCollapses {
       return true;
     }
     [[nodiscard]] bool exceeds_error() const {
-      return self.merger_.exceeds_error(state(), this->due, this->p, this->q);
+      return self.operator_.exceeds_error(state(), this->due, this->p, this->q);
     }
     [[nodiscard]] bool meets_link_condition() const {
       self.look_around(batch, i);
-      return Merger::Change::meets_link_condition();
+      return Operator::Change::meets_link_condition();
     }
     [[nodiscard]] bool meets_criteria() const {
       return state().criteria == nullptr || !state().criteria->bounds() ||
@@ -463,12 +463,12 @@ class EdgeCollapses {
   };
   [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, const Due& due, std::uint32_t p,
                                   std::uint32_t q) {
-    return judge(Change{{{}, merger_, due, p, q, share_->state.limits.cos_deviation}, *this, b, i});
+    return judge(Change{{{}, operator_, due, p, q, share_->state.limits.cos_deviation}, *this, b, i});
   }
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q) {
     record_collapse(change_, mesh_, due.half_edge,
-                    Merger::place_of(vertices_[p], vertices_[q], due.end, due.x));
+                    Operator::place_of(vertices_[p], vertices_[q], due.end, due.x));
     const std::size_t at_p = around().ring_p().size() + 1, at_q = around().ring_q().size() + 1;
     change_.edges_before =
         std::max(at_p - (mesh_.on_boundary(p) ? 1 : 0), at_q - (mesh_.on_boundary(q) ? 1 : 0));
@@ -481,34 +481,34 @@ class EdgeCollapses {
   void look_around(const Pending& b, std::size_t i) {
     const auto &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
     if (at_p.is_whole() && at_q.is_whole() &&
-        (merger_.look_around(at_p.part(0, at_p.size), at_q.part(0, at_q.size)).flags() &
+        (operator_.look_around(at_p.part(0, at_p.size), at_q.part(0, at_q.size)).flags() &
          VertexRecord::kTouched) == 0)
       return;
     const std::uint32_t h = b.due[i].half_edge;
     ring_p_.gather(mesh_, h);
     ring_q_.gather(mesh_, mesh_.twin(h));
-    merger_.look_around(ring_p_.ring(), ring_q_.ring());
+    operator_.look_around(ring_p_.ring(), ring_q_.ring());
   }
-  [[nodiscard]] const CollapseNeighbourhood& around() const { return merger_.neighbourhood(); }
+  [[nodiscard]] const CollapseNeighbourhood& around() const { return operator_.neighbourhood(); }
 
   void collapse(const Due& due, std::uint32_t p, std::uint32_t q) {
     DecimationState& state = share_->state;
-    const Merge merge = merger_.plan(state, due, p, q);
+    const typename Operator::Plan plan = operator_.plan(state, due, p, q);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) {
-      collect_moved(merge.half_edge);
-      price_moved(vertices_[merge.gone], vertices_[merge.kept], due.cost);
+      collect_moved(plan.half_edge);
+      price_moved(vertices_[plan.gone], vertices_[plan.kept], due.cost);
     }
     if (state.criteria != nullptr && state.criteria->bounds()) state.criteria->keep(change_);
-    erase_queued(merge.half_edge);
-    erase_queued(mesh_.twin(merge.half_edge));
-    const CollapseMesh::Collapsed collapsed = merger_.carry_out(state, due, merge, share_->queue.bucket());
-    touched_.push_back(merge.kept);
+    erase_queued(plan.half_edge);
+    erase_queued(mesh_.twin(plan.half_edge));
+    const CollapseMesh::Collapsed collapsed = operator_.carry_out(state, due, plan, share_->queue.bucket());
+    touched_.push_back(plan.kept);
     if (share_->partition.is_interface())
-      share_->partition.merge(mesh_, merge.gone, merge.kept, merge.others.vertices);
+      share_->partition.merge(mesh_, plan.gone, plan.kept, plan.others.vertices);
     for (const auto& [g, its_twin] : collapsed.joined) join(g, its_twin);
-    if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(merge.kept);
+    if constexpr (Placement::kMayFall == MayFall::kAround) refresh_around(plan.kept);
     if constexpr (Placement::kMayFall == MayFall::kOfGone) put_moved();
-    revive(merge.kept);
+    revive(plan.kept);
   }
 
   // The half-edges of a face that goes.
@@ -681,7 +681,7 @@ class EdgeCollapses {
   CollapseMesh& mesh_;
   LargeArray<VertexRecord>& vertices_;
   Share* share_ = nullptr;
-  Merger merger_;
+  Operator operator_;
   EdgeBatch batch_;
   EdgeBatch::Lanes ranks_;
   LocalChange change_;

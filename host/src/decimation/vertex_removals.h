@@ -20,7 +20,6 @@
 #include "decimation/cost/fan.h"
 #include "decimation/cost/retriangulation.h"
 #include "decimation/decimation_state.h"
-#include "decimation/edge_merger.h"
 #include "decimation/legality/criteria.h"
 #include "decimation/legality/fold_over.h"
 #include "decimation/legality/judge.h"

@@ -33,7 +33,7 @@ RangeCoarsening::RangeCoarsening(DecimationState& state, const VertexRange& rang
       vertices_(state.mesh.vertices),
       range_(range),
       max_cost_(max_cost),
-      merger_(state.mesh) {}
+      operator_(state.mesh) {}
 
 bool RangeCoarsening::is_candidate(std::uint32_t v) const {
   return vertices_[v].alive() && !vertices_[v].has(VertexRecord::kLocked);
@@ -113,7 +113,7 @@ void RangeCoarsening::attempt(std::size_t i) {
   }
   // The rings are as they were unless a vertex of theirs went.
   const CollapseNeighbourhood& around =
-      merger_.look_around(at_p.part(best + 1, at_p.size - 1), at_q.part(0, at_q.size - 1));
+      operator_.look_around(at_p.part(best + 1, at_p.size - 1), at_q.part(0, at_q.size - 1));
   if ((around.flags() & VertexRecord::kAbsorbed) != 0) return;
   const DueEdge edge{
       h,
@@ -121,8 +121,9 @@ void RangeCoarsening::attempt(std::size_t i) {
       EdgeBatch::kAtQ,
       {vq.position[0] - vp.position[0], vq.position[1] - vp.position[1], vq.position[2] - vp.position[2]}};
   const float cos_deviation = std::max(state_.limits.cos_deviation, kCosSmooth);
-  if (judge(EdgeMerger<false>::Change{{}, merger_, edge, p, q, cos_deviation}) != Reason::kNone) return;
-  merger_.carry_out(state_, edge, merger_.plan(state_, edge, p, q), 0);
+  if (judge(CollapseOperator<false>::Change{{}, operator_, edge, p, q, cos_deviation}) != Reason::kNone)
+    return;
+  operator_.carry_out(state_, edge, operator_.plan(state_, edge, p, q), 0);
   touched_.push_back(q);
   vertices_[p].source |= VertexRecord::kAbsorbed;
 }

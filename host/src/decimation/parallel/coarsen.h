@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "decimation/collapse_operator.h"
 #include "decimation/decimation_state.h"
-#include "decimation/edge_merger.h"
 #include "decimation/parallel/coarsen_batch.h"
 #include "decimation/vertex_record.h"
 
@@ -48,7 +48,7 @@ class RangeCoarsening {
   LargeArray<VertexRecord>& vertices_;
   VertexRange range_;
   float max_cost_;
-  EdgeMerger<false> merger_;
+  CollapseOperator<false> operator_;
   std::unique_ptr<CoarsenBatch> batch_ = std::make_unique<CoarsenBatch>();
   std::vector<CoarsenBatch::Ring> at_target_ = std::vector<CoarsenBatch::Ring>(CoarsenBatch::kSize);
   std::vector<std::uint32_t> touched_;  // and kept, by this batch

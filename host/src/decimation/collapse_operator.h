@@ -23,11 +23,12 @@
 
 namespace vkmesh::detail {
 
-/// Edges of a mesh, with attributes or without. It knows the surroundings of one edge at a time.
+/// Judges and carries out collapses of edges of a mesh, with attributes or without. It knows the surroundings
+/// of one edge at a time.
 template <bool kAttributes>
-class EdgeMerger {
+class CollapseOperator {
  public:
-  explicit EdgeMerger(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
+  explicit CollapseOperator(CollapseMesh& mesh) : mesh_(mesh), vertices_(mesh.vertices) {}
 
   /// Where the kept vertex comes to lie.
   [[nodiscard]] static std::array<float, 3> place_of(const VertexRecord& p, const VertexRecord& q,
@@ -49,23 +50,23 @@ class EdgeMerger {
   }
   [[nodiscard]] const CollapseNeighbourhood& neighbourhood() const { return neighbourhood_; }
 
-  /// The collapse of the edge around which the merger has looked, as judge() takes it.
+  /// The collapse of the edge around which it has looked last, as judge() takes it.
   struct Change : AlwaysLegal {
-    EdgeMerger& merger;
+    CollapseOperator& collapse_operator;
     const DueEdge& due;
     std::uint32_t p, q;
     float cos_deviation;  // a face may turn by so much
 
     [[nodiscard]] bool meets_link_condition() const {
-      const auto &ring_p = merger.neighbourhood_.ring_p().vertices,
-                 &ring_q = merger.neighbourhood_.ring_q().vertices;
-      if (ring_p.size() > 2 && !merger.neighbourhood_.may_share_more())
+      const auto &ring_p = collapse_operator.neighbourhood_.ring_p().vertices,
+                 &ring_q = collapse_operator.neighbourhood_.ring_q().vertices;
+      if (ring_p.size() > 2 && !collapse_operator.neighbourhood_.may_share_more())
         return ring_p.front() != ring_p.back();
-      return detail::meets_link_condition(ring_p, ring_q, merger.sorted_);
+      return detail::meets_link_condition(ring_p, ring_q, collapse_operator.sorted_);
     }
     [[nodiscard]] bool folds_over() const {
-      return detail::folds_over(merger.neighbourhood_, merger.vertices_[p].position,
-                                merger.vertices_[q].position, due.x, cos_deviation);
+      return detail::folds_over(collapse_operator.neighbourhood_, collapse_operator.vertices_[p].position,
+                                collapse_operator.vertices_[q].position, due.x, cos_deviation);
     }
   };
   /// squared_distance_of_collapse() of the same edge.
@@ -76,13 +77,13 @@ class EdgeMerger {
   }
 
   /// Which of two vertices goes, the half-edge from it to the other, and its other neighbours.
-  struct Merge {
+  struct Plan {
     std::uint32_t half_edge, gone, kept;
     OneRing others;
   };
   /// Decides which end goes: as the placement has chosen, else that of fewer neighbours, which is less work.
-  [[nodiscard]] Merge plan(const DecimationState& state, const DueEdge& due, std::uint32_t p,
-                           std::uint32_t q) const {
+  [[nodiscard]] Plan plan(const DecimationState& state, const DueEdge& due, std::uint32_t p,
+                          std::uint32_t q) const {
     const OneRing &ring_p = neighbourhood_.ring_p(), &ring_q = neighbourhood_.ring_q();
     const std::size_t at_p = ring_p.size(), at_q = ring_q.size();
     const bool is_first =
@@ -99,13 +100,13 @@ class EdgeMerger {
     return {h, p ^ q ^ kept, kept, keep_p ? ring_q : ring_p};
   }
 
-  /// Merges the quadrics, and the vertices. Both are touched then. `bucket` is for the history.
-  CollapseMesh::Collapsed carry_out(DecimationState& state, const DueEdge& due, const Merge& merge,
+  /// Adds up the quadrics, and makes one vertex of two. Both are touched then. `bucket` is for the history.
+  CollapseMesh::Collapsed carry_out(DecimationState& state, const DueEdge& due, const Plan& plan,
                                     std::uint32_t bucket) {
-    const std::uint32_t h = merge.half_edge;
-    VertexRecord &kept = vertices_[merge.kept], &gone = vertices_[merge.gone];
+    const std::uint32_t h = plan.half_edge;
+    VertexRecord &kept = vertices_[plan.kept], &gone = vertices_[plan.gone];
     const bool from_p = h == due.half_edge;
-    const std::uint32_t p = from_p ? merge.gone : merge.kept, q = from_p ? merge.kept : merge.gone;
+    const std::uint32_t p = from_p ? plan.gone : plan.kept, q = from_p ? plan.kept : plan.gone;
     const std::array<float, 3> place = place_of(vertices_[p], vertices_[q], due.end, due.x);
     const float geometric = geometric_cost(state, due, p, q);
     std::array<float, 3> dk, dg;
@@ -125,7 +126,7 @@ class EdgeMerger {
     if constexpr (kAttributes) {
       state.attributes->collapse(h, dg, dk);
       const double rest = static_cast<double>(due.cost) - static_cast<double>(geometric);
-      if (const float weight = state.attributes->weight(merge.kept); weight > 0)
+      if (const float weight = state.attributes->weight(plan.kept); weight > 0)
         state.outcome.attribute_error2 =
             std::max(state.outcome.attribute_error2, rest / static_cast<double>(weight));
     }
@@ -138,7 +139,7 @@ class EdgeMerger {
                                       kept.has(VertexRecord::kMoved),
                                       {mesh_.face(h).source, mesh_.face(mesh_.twin(h)).source},
                                       bucket});
-    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, merge.others.edges);
+    const CollapseMesh::Collapsed collapsed = mesh_.collapse(h, plan.others.edges);
     state.faces -= collapsed.faces;
     --state.vertices;
     ++state.outcome.collapses;
