@@ -1,6 +1,6 @@
 // coin_counts FILE POINTS TRIANGLES ...: reads each file with Coin's SoDB and compares what a render
 // traversal would draw; "-" stands for any count. Points are the different positions among the corners of
-// triangles.
+// triangles. coin_counts binary IN OUT: writes what Coin reads again, in Inventor's binary form.
 #include <array>
 #include <cstdlib>
 #include <iostream>
@@ -10,6 +10,7 @@
 #include <Inventor/SoDB.h>
 #include <Inventor/SoPrimitiveVertex.h>
 #include <Inventor/actions/SoCallbackAction.h>
+#include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoShape.h>
 
@@ -31,15 +32,32 @@ void on_triangle(void* data, SoCallbackAction* action, const SoPrimitiveVertex* 
   }
 }
 
+SoSeparator* read(const std::string& file) {
+  SoInput input;
+  return input.openFile(file.c_str()) ? SoDB::readAll(&input) : nullptr;
+}
+
+int write_binary(const std::string& in, const std::string& out) {
+  SoSeparator* scene = read(in);
+  SoOutput output;
+  if (scene == nullptr || !output.openFile(out.c_str())) return EXIT_FAILURE;
+  scene->ref();
+  output.setBinary(TRUE);
+  SoWriteAction(&output).apply(scene);
+  output.closeFile();
+  scene->unref();
+  return EXIT_SUCCESS;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   SoDB::init();
+  if (count == 4 && arguments[1] == std::string("binary")) return write_binary(arguments[2], arguments[3]);
   int bad = 0;
   for (int i = 1; i + 2 < count; i += 3) {
     const std::string file = arguments[i], points = arguments[i + 1], triangles = arguments[i + 2];
-    SoInput input;
-    SoSeparator* scene = input.openFile(file.c_str()) ? SoDB::readAll(&input) : nullptr;
+    SoSeparator* scene = read(file);
     Counts counts;
     if (scene != nullptr) {
       scene->ref();

@@ -186,6 +186,23 @@ compiled cgal cgal_judge "points and faces" mesh stl
 compiled openmesh openmesh_counts "points and faces" mesh stl
 if [ -n "${written[scene]:-}" ]; then compiled coin coin_counts "points and triangles" scene; else absent coin "this vkmesh writes neither Inventor nor VRML"; fi
 
+# ---- What vkmesh reads of a binary Inventor file that Coin made of a text
+if [ -x "$readers/coin_counts" ]; then
+  count=0
+  # shellcheck disable=SC2086
+  while read -r file _; do
+    case "$file" in *.iv) ;; *) continue ;; esac
+    if timeout 60 "$readers/coin_counts" binary "$file" "$work/binary.iv" 2>"$work/err" && "$vkmesh" convert "$work/binary.iv" "$work/binary.ply" --quiet &&
+      "$vkmesh" convert "$file" "$work/text.ply" --quiet && cmp "$work/text.ply" "$work/binary.ply"; then
+      count=$((count + 1))
+    else
+      cat "$work/err" >&2
+      fails "$file, written in binary by Coin, is not what its text is"
+    fi
+  done < <(printf '%s %s %s\n' ${written[scene]:-})
+  echo "coin: $count files read in its binary form"
+fi
+
 # ---- What CGAL and vkmesh say about the meshes of libcgal-demo
 if [ -x "$readers/cgal_judge" ] && [ -e data/cgal/meshes ]; then
   arguments=()
