@@ -369,6 +369,39 @@ TEST_CASE("bounds of the Hausdorff distance hold what a search over all triangle
   }
 }
 
+TEST_CASE("a small bump is found below a large triangle, wherever it lies", "[distance]") {
+  IndexedFaceSet whole = test::grid(1, 1);
+  for (Vec3& p : whole.points) p *= Vec3(40.0f, 25.0f, 1.0f);
+  SurfaceDistanceOptions options;
+  options.samples = 1;
+  options.hausdorff_tolerance = 0.01;
+  std::mt19937 random(9);
+  for (int i = 0; i < 40; ++i) {
+    IndexedFaceSet plate = test::grid(40, 25);
+    for (Vec3& p : plate.points) p.z = 0;
+    const std::uint32_t x = 1 + static_cast<std::uint32_t>(random() % 39),
+                        y = 1 + static_cast<std::uint32_t>(random() % 24);
+    const auto at = static_cast<std::size_t>(
+        std::ranges::find(plate.points, Vec3(static_cast<float>(x), static_cast<float>(y), 0.0f)) -
+        plate.points.begin());
+    REQUIRE(at < plate.points.size());
+    plate.points[at].z = 0.25f;
+    const DVec3 below(x, y, 0);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t f = 0; f < plate.face_count(); ++f) {
+      const auto c = plate.face(f);
+      if (glm::distance(DVec3(plate.points[c[0]]), below) < 3)
+        nearest = std::min(nearest, brute_force(below, DVec3(plate.points[c[0]]), DVec3(plate.points[c[1]]),
+                                                DVec3(plate.points[c[2]])));
+    }
+    REQUIRE(nearest > 0.1);
+    const SurfaceDistance d = surface_distance(surface(whole), surface(plate), options).value();
+    CHECK(d.a_to_b.hausdorff_high >= nearest - 1e-8);
+    CHECK(d.a_to_b.hausdorff_low >= nearest / 1.011);
+    CHECK(d.b_to_a.hausdorff_low == Approx(0.25));
+  }
+}
+
 TEST_CASE("normals differ by the angle between the surfaces", "[distance]") {
   const IndexedFaceSet flat = test::grid(4, 4);
   IndexedFaceSet tilted = flat;
