@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include <vkmesh/base/progress.h>
@@ -16,6 +13,7 @@
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/decimation/reason.h>
 
+#include "base/stop.h"
 #include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
@@ -28,52 +26,6 @@ struct Limits {
   std::size_t vertices_asked = 0;  // less than `vertices` where the target is out of reach
   double error2 = std::numeric_limits<double>::infinity();  // mean squared distance, local units
   float cos_deviation = 0;
-};
-
-/// Whether to stop before the target, because the time is over or the caller wants it. Long steps ask() again
-/// and again, on any thread; what they have done by then is whole.
-class Stop {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  /// From `begun` on, for so many seconds. `progress` is called on this thread alone, and must outlive this.
-  Stop(const Progress& progress, Clock::time_point begun, double seconds)
-      : progress_(progress), begun_(begun), seconds_(seconds), heard_(begun) {}
-
-  [[nodiscard]] bool is_set() const { return is_cancelled() || is_time_over(); }
-  [[nodiscard]] bool is_cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
-  [[nodiscard]] bool is_time_over() const { return time_over_.load(std::memory_order_relaxed); }
-
-  /// Looks at the clock, and calls the caller if that was long ago.
-  void ask() {
-    const Clock::time_point now = Clock::now();
-    if (std::chrono::duration<double>(now - begun_).count() >= seconds_)
-      time_over_.store(true, std::memory_order_relaxed);
-    if (std::this_thread::get_id() == thread_ && now - heard_ >= kLong) report(fraction_);
-  }
-  /// Tells the caller how much is done; on the thread of the caller.
-  void report(double fraction) {
-    fraction_ = fraction;
-    heard_ = Clock::now();
-    if (progress_ && !progress_(fraction)) cancelled_.store(true, std::memory_order_relaxed);
-  }
-  /// Errors: kInterrupted where the caller wants it.
-  [[nodiscard]] Result<void> check() {
-    ask();
-    if (is_cancelled()) return fail(ErrorCode::kInterrupted, "decimation was cancelled");
-    return {};
-  }
-
- private:
-  static constexpr std::chrono::milliseconds kLong{250};
-
-  const Progress& progress_;
-  Clock::time_point begun_;
-  double seconds_;
-  Clock::time_point heard_;  // of the caller
-  double fraction_ = 0;
-  std::thread::id thread_ = std::this_thread::get_id();
-  std::atomic<bool> cancelled_ = false, time_over_ = false;
 };
 
 /// From how many faces on work is shared out: of each partition whose edges are collapsed, and of each range

@@ -112,8 +112,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   const std::span new_face(new_face_of.get(), mesh.face_count());
   for (std::uint32_t i = 0; i < result.source_face.size(); ++i) new_face[result.source_face[i]] = i;
   if (attributes != nullptr) result.attributes = attributes->gather(alive_faces, new_face);
-  std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size()),
-      leading(result.positions.size(), kInvalid);
+  std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size());
   parallel_ranges(alive_faces.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kAhead = 16;
     for (std::size_t k = begin; k < end; ++k) {
@@ -126,11 +125,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
       }
     }
   });
-  // The first of each vertex, or that on the boundary.
-  for (auto h = static_cast<std::uint32_t>(origin.size()); h-- > 0;) leading[origin[h]] = h;
-  for (std::uint32_t h = 0; h < origin.size(); ++h)
-    if (twin[h] == kInvalid) leading[origin[h]] = h;
-  result.mesh = HalfEdgeMesh::from_arrays(std::move(origin), std::move(twin), std::move(leading));
+  result.mesh = HalfEdgeMesh::from_twins(std::move(origin), std::move(twin), result.positions.size());
   return result;
 }
 

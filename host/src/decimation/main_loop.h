@@ -33,15 +33,13 @@ Result<Outcome> run_removals(DecimationState& state) {
     Removals removals(state);
     removals.fill();
     const std::size_t first_faces = state.faces, first_vertices = state.vertices;
-    for (std::size_t steps = 0; !state.reached(); ++steps) {
-      if (steps % (kRemovalsBetweenReports / Removals::kStep) == 0)
-        stop.report(progress_of(state, first_faces, first_vertices));
-      stop.ask();
-      if (state.reached() || removals.step() || state.reached()) continue;
+    const bool none_left = run_steps(
+        stop, kRemovalsBetweenReports / Removals::kStep, [&] { return state.reached(); },
+        [&] { return removals.step(); }, [&] { return progress_of(state, first_faces, first_vertices); });
+    if (none_left) {
       removals.count_blocked();
       const bool by_error = state.outcome.blocked[Reason::kErrorBound] > 0;
       state.outcome.stop = by_error ? DecimateStop::kErrorBound : DecimateStop::kNoLegalCollapse;
-      break;
     }
     if (state.at_target() && !state.at_what_was_asked()) removals.count_blocked();
   }

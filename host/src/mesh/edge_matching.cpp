@@ -87,16 +87,6 @@ EdgeCounts pair_edges(EdgeRecords& edges, std::span<const std::uint32_t> corners
   return counts;
 }
 
-// On the boundary the half-edge without a twin, elsewhere the first.
-std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
-                                              std::span<const std::uint32_t> twin) {
-  std::vector<std::uint32_t> leading(point_count, kInvalid);
-  for (std::size_t h = corners.size(); h-- > 0;) leading[corners[h]] = static_cast<std::uint32_t>(h);
-  for (std::size_t h = 0; h < corners.size(); ++h)
-    if (twin[h] == kInvalid) leading[corners[h]] = static_cast<std::uint32_t>(h);
-  return leading;
-}
-
 // The faces that a walk meets around a vertex, from its leading half-edge.
 std::uint32_t fan_size(std::uint32_t leading, std::span<const std::uint32_t> twin,
                        std::span<const std::uint32_t> face_offsets) {
@@ -174,6 +164,15 @@ void complete(Matching& matching, std::size_t point_count, std::span<const std::
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                                              std::span<const std::uint32_t> twin) {
+  std::vector<std::uint32_t> leading(point_count, kInvalid);
+  for (std::size_t h = corners.size(); h-- > 0;) leading[corners[h]] = static_cast<std::uint32_t>(h);
+  for (std::size_t h = 0; h < corners.size(); ++h)
+    if (twin[h] == kInvalid) leading[corners[h]] = static_cast<std::uint32_t>(h);
+  return leading;
+}
 
 Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
                              std::span<const std::uint32_t> face_offsets) {

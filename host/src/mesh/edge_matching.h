@@ -38,6 +38,11 @@ struct Matching {
   std::vector<std::uint32_t> leading;
 };
 
+/// For each point a half-edge that leaves it: on the boundary the one without a twin, elsewhere the first;
+/// kInvalid where there is none. O(points + corners).
+std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
+                                              std::span<const std::uint32_t> twin);
+
 /// Corners as in IndexedFaceSet. O(points + corners) apart from the small sorts within one point.
 /// Errors: kUsage for corners that name no point or offsets that do not ascend; kUnsuitable for more than
 /// 2^32 - 2 corners or points.

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/mesh/half_edge_mesh.h>
+
+#include "mesh/edge_matching.h"
 
 namespace vkmesh {
 
@@ -21,6 +24,12 @@ HalfEdgeMesh HalfEdgeMesh::from_arrays(std::vector<std::uint32_t> origin, std::v
         mesh.face_[h] = static_cast<std::uint32_t>(f);
   }
   return mesh;
+}
+
+HalfEdgeMesh HalfEdgeMesh::from_twins(std::vector<std::uint32_t> origin, std::vector<std::uint32_t> twin,
+                                      std::size_t vertex_count) {
+  std::vector<std::uint32_t> leading = detail::leading_half_edges(vertex_count, origin, twin);
+  return from_arrays(std::move(origin), std::move(twin), std::move(leading));
 }
 
 std::size_t HalfEdgeMesh::boundary_half_edge_count() const {

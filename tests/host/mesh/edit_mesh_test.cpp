@@ -15,6 +15,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "mesh/edit/gather.h"
 #include "mesh/edit/link_condition.h"
 #include "mesh/edit/one_ring.h"
 #include "mesh/edit_mesh_support.h"
@@ -421,7 +422,7 @@ TEST_CASE("no edge flips on the boundary, nor where the other edge exists", "[me
 
 TEST_CASE("splits grow a mesh far beyond its size", "[mesh][edit]") {
 #ifdef VKMESH_ADDRESS_SANITIZER
-  const int splits = 400;  // each is followed by a look at the whole mesh
+  const int splits = 120;  // each is followed by a look at the whole mesh
 #else
   const int splits = 1200;
 #endif
@@ -443,6 +444,44 @@ TEST_CASE("a component is erased face by face with its ghosts", "[mesh][edit]") 
   std::size_t left = 0;
   for_each_half_edge(mesh, [&](std::uint32_t h) { left += mesh.is_ghost(h) ? 1000 : 1; });
   CHECK(left == sphere.corners.size());
+}
+
+TEST_CASE("a mesh comes back from being edited as if it had been built from its faces", "[mesh][edit]") {
+  std::vector<IndexedFaceSet> shapes = test::noisy_shapes();
+  shapes.push_back(test::both(test::grid(4, 3), test::cylinder(3, 5), {9.0f, 0.0f, 0.0f}));
+  for (IndexedFaceSet& shape : shapes) {
+    shape.points.emplace_back(7.0f);  // in no face
+    const HalfEdgeMesh original = test::half_edges(shape);
+    Mesh mesh;
+    REQUIRE(mesh.build(original));
+    check_valid(mesh);
+    const auto same = [](const HalfEdgeMesh& a, const HalfEdgeMesh& b) {
+      return std::ranges::equal(a.origins(), b.origins()) && std::ranges::equal(a.twins(), b.twins()) &&
+             std::ranges::equal(a.leadings(), b.leadings());
+    };
+    CHECK(same(detail::gather(mesh).mesh, original));
+
+    std::minstd_rand random(3);
+    for (int i = 0; i < 200; ++i) {
+      const auto h = static_cast<std::uint32_t>(random() % mesh.half_edge_bound());
+      if (h % 4 != 3 && mesh.can_flip(h)) mesh.flip(h);
+    }
+    for (int i = 0; i < 20; ++i) {
+      const auto f = static_cast<std::uint32_t>(random() % mesh.face_count());
+      mesh.split(4 * f + 1);
+    }
+    check_valid(mesh);
+    const detail::Gathered gathered = detail::gather(mesh);
+    REQUIRE(validate(gathered.mesh).has_value());
+    CHECK(gathered.mesh.vertex_count() == original.vertex_count() + 20);
+    IndexedFaceSet faces;
+    faces.points.resize(gathered.mesh.vertex_count());
+    faces.corners.assign(gathered.mesh.origins().begin(), gathered.mesh.origins().end());
+    CHECK(same(gathered.mesh, test::half_edges(faces)));
+    for (std::uint32_t f = 0; f < gathered.faces.size(); ++f)
+      for (std::uint32_t i = 0; i < 3; ++i)
+        CHECK(gathered.vertices[faces.corners[3 * f + i]] == mesh.origin(4 * gathered.faces[f] + i));
+  }
 }
 
 TEST_CASE("validation names what is broken", "[mesh][edit]") {

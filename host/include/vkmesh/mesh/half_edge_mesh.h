@@ -86,6 +86,10 @@ class VKMESH_API HalfEdgeMesh {
                                   std::vector<std::uint32_t> leading,
                                   std::vector<std::uint32_t> face_offsets = {});
 
+  /// The same of triangles, with the leading half-edges that to_half_edge_mesh() finds. O(half-edges).
+  static HalfEdgeMesh from_twins(std::vector<std::uint32_t> origin, std::vector<std::uint32_t> twin,
+                                 std::size_t vertex_count);
+
   [[nodiscard]] std::size_t vertex_count() const { return leading_.size(); }
   [[nodiscard]] std::size_t half_edge_count() const { return origin_.size(); }
   [[nodiscard]] std::size_t face_count() const {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "decimation/cost/edge_batch.h"
-#include "decimation/order/addressable_heap.h"
+#include "base/addressable_heap.h"
 #include "decimation/order/monotone_queue.h"
 
 namespace vkmesh::detail {

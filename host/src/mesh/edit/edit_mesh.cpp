@@ -163,6 +163,33 @@ bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& le
   return add_ghosts(fans.boundary);
 }
 
+bool EditFaces::copy(const HalfEdgeMesh& mesh) {
+  face_count_ = mesh.face_count();
+  apex_ = static_cast<std::uint32_t>(mesh.vertex_count());
+  if (face_count_ > kMaxFaces) return false;
+  faces_ = LargeArray<Face>(face_count_ + face_count_ / 16 + 64);
+  const auto origins = mesh.origins(), twins = mesh.twins();
+  ranges_ = VertexRanges(mesh.vertex_count(), face_count_, [&](std::size_t begin, std::size_t end) {
+    VertexRanges::Extent extent;
+    for (std::size_t f = begin; f < end; ++f) {
+      Face& face = faces_[f];
+      face.tags = 0;
+      face.source = static_cast<std::uint32_t>(f);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t t = twins[3 * f + i];
+        face.origin[i] = origins[3 * f + i];
+        face.twin[i] = t == kInvalid ? kInvalid : t + t / 3;
+        extent.add(face.origin[i]);
+      }
+    }
+    return extent;
+  });
+  std::vector<std::uint32_t> boundary;  // in the order of the vertices, each of which starts one at most
+  for (const std::uint32_t h : mesh.leadings())
+    if (h != kInvalid && twins[h] == kInvalid) boundary.push_back(h + h / 3);
+  return add_ghosts(boundary);
+}
+
 // Puts a ghost, the triangle (target, origin, apex), beyond each boundary edge; these in the order of their
 // origins, of which none comes twice.
 bool EditFaces::add_ghosts(std::span<const std::uint32_t> boundary) {

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include <vkmesh/base/result.h>
+#include <vkmesh/mesh/half_edge_mesh.h>
 #include <vkmesh/mesh/handles.h>
 
 #include "base/large_array.h"
+#include "base/parallel.h"
 #include "base/prefetch.h"
 #include "mesh/edit/vertex_ranges.h"
 
@@ -100,6 +102,8 @@ class EditFaces {
   [[nodiscard]] bool connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading,
                              std::uint32_t* scratch);
   [[nodiscard]] std::size_t scratch_words() const { return 3 * face_count_ + kScratchTail; }
+  /// Copies the faces of a mesh with their twins, and adds the ghosts. False where there are too many. O(n).
+  [[nodiscard]] bool copy(const HalfEdgeMesh& mesh);
   /// See EditMesh::validate(). `leading`: of each vertex, kInvalid for the apex.
   [[nodiscard]] Result<void> validate_connectivity(std::span<const std::uint32_t> leading) const;
 
@@ -163,6 +167,24 @@ class EditMesh : public EditFaces {
     return connect(vertex_count, leading, reinterpret_cast<std::uint32_t*>(&vertices[0]))
                ? Built::kDone
                : Built::kNoManifold;
+  }
+
+  /// Takes over the connectivity of a valid mesh of triangles, with its numbers: half-edge 3f + i becomes
+  /// 4f + i, f is the source of face f, no tag is set, and vertices are default-made but for `leading`. False
+  /// where there are more than kMaxFaces faces and boundary edges or kMaxVertices vertices. O(n).
+  [[nodiscard]] bool build(const HalfEdgeMesh& mesh) {
+    if (mesh.vertex_count() > kMaxVertices || !copy(mesh)) return false;
+    vertex_bound_ = mesh.vertex_count() + 1;
+    vertices = LargeArray<Vertex>(vertex_bound_);
+    parallel_ranges(mesh.vertex_count(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const std::uint32_t h = mesh.leadings()[v];
+        vertices[v] = {};
+        vertices[v].leading = h == kInvalid ? kInvalid : h + h / 3;
+      }
+    });
+    vertices[apex_] = {};
+    return true;
   }
 
   /// All vertices are less, the apex and those of splits included.

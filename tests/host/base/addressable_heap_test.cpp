@@ -1,4 +1,4 @@
-#include "decimation/order/addressable_heap.h"
+#include "base/addressable_heap.h"
 
 #include <algorithm>
 #include <cstdint>

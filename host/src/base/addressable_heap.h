@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include <vkmesh/mesh/handles.h>
-
 namespace vkmesh {
 
 /// An implicit d-ary min-heap over the ids 0 … capacity − 1, each present at most once (D. B. Johnson,
@@ -20,11 +18,11 @@ class AddressableHeap {
  public:
   AddressableHeap() = default;
   /// Ids must be < capacity.
-  explicit AddressableHeap(std::size_t capacity) : slot_(capacity, kInvalid) { entries_.reserve(capacity); }
+  explicit AddressableHeap(std::size_t capacity) : slot_(capacity, kAbsent) { entries_.reserve(capacity); }
 
   [[nodiscard]] bool empty() const { return entries_.empty(); }
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
-  [[nodiscard]] bool contains(std::uint32_t id) const { return slot_[id] != kInvalid; }
+  [[nodiscard]] bool contains(std::uint32_t id) const { return slot_[id] != kAbsent; }
   /// The id must be present.
   [[nodiscard]] float priority(std::uint32_t id) const { return priority_of(entries_[slot_[id]]); }
 
@@ -49,7 +47,7 @@ class AddressableHeap {
   void set(std::uint32_t id, float priority) {
     const Entry entry = pack(id, priority);
     const std::uint32_t slot = slot_[id];
-    if (slot == kInvalid) {
+    if (slot == kAbsent) {
       entries_.push_back(entry);
       rise(entries_.size() - 1, entry);
     } else if (entry < entries_[slot]) {
@@ -62,8 +60,8 @@ class AddressableHeap {
   /// Removes the id if it is present. O(log size).
   void remove(std::uint32_t id) {
     const std::uint32_t slot = slot_[id];
-    if (slot == kInvalid) return;
-    slot_[id] = kInvalid;
+    if (slot == kAbsent) return;
+    slot_[id] = kAbsent;
     const Entry last = entries_.back();
     const Entry removed = entries_[slot];
     entries_.pop_back();
@@ -79,6 +77,7 @@ class AddressableHeap {
   void pop() { remove(top()); }
 
  private:
+  static constexpr std::uint32_t kAbsent = 0xffffffffu;
   /// The priority's bits, made to sort as integers do, above the id: one comparison orders both.
   using Entry = std::uint64_t;
 
