@@ -2,6 +2,10 @@
 
 #include <string>
 
+#ifdef VKMESH_HAS_VULKAN
+#include <vkmesh/engine/passes/swap_rounds.h>
+#endif
+
 namespace vkmesh::cli {
 namespace {
 
@@ -25,6 +29,20 @@ const char* note_no_gpu(Job& job, const Error& error) {
   return " (no GPU that serves)";
 }
 #endif
+
+Result<SwapRounds> Backend::swap_rounds(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                        const SwapRoundsOptions& options) {
+#ifdef VKMESH_HAS_VULKAN
+  if (context_) {
+    VKMESH_TRY(DeviceMesh device,
+               job_.timed("upload", [&] { return DeviceMesh::create(*context_, mesh, positions); }));
+    return job_.timed("device",
+                      [&] { return run_swap_rounds(*context_, device, options, job_.progress("swapping")); });
+  }
+#endif
+  return job_.timed("compute",
+                    [&] { return vkmesh::swap_rounds(mesh, positions, options, job_.progress("swapping")); });
+}
 
 Result<Backend> open_backend(Job& job) {
   const std::string& asked = job.options().device;

@@ -11,6 +11,7 @@
 #ifdef VKMESH_HAS_VULKAN
 #include <vkmesh/engine/core/context.h>
 #endif
+#include <vkmesh/passes/swap_rounds.h>
 
 #include "job/common.h"
 #include "passes/pass_table.h"
@@ -43,6 +44,10 @@ class Backend {
     VKMESH_CHECK(job_.timed("compute", [&] { return pass.host(input, job_.progress("smoothing"), output); }));
     return output;
   }
+
+  /// Rounds of edge swaps, which end when one swaps nothing.
+  [[nodiscard]] Result<SwapRounds> swap_rounds(const HalfEdgeMesh& mesh, std::span<const Vec3> positions,
+                                               const SwapRoundsOptions& options);
 
  private:
 #ifdef VKMESH_HAS_VULKAN

@@ -11,6 +11,7 @@
 #include <vkmesh/engine/passes/laplacian_smoothing.h>
 #include <vkmesh/engine/passes/restore_volume.h>
 #include <vkmesh/engine/passes/surface_measures.h>
+#include <vkmesh/engine/passes/swap_rounds.h>
 #include <vkmesh/engine/passes/swap_scores.h>
 #include <vkmesh/engine/passes/triangle_normals.h>
 #include <vkmesh/engine/passes/vertex_normals.h>
@@ -18,6 +19,7 @@
 #include <vkmesh/passes/collapse_costs.h>
 #include <vkmesh/passes/restore_volume.h>
 #include <vkmesh/passes/surface_measures.h>
+#include <vkmesh/passes/swap_rounds.h>
 #include <vkmesh/passes/swap_scores.h>
 #include <vkmesh/passes/triangle_normals.h>
 
@@ -151,6 +153,27 @@ Pass<Floats> swap_scores_pass(SwapCriterion criterion) {
           on_device<float>([criterion](Recorder& recorder, DeviceMesh& mesh, DeviceArray<float>& scores) {
             return record_swap_scores(recorder, mesh, scores, criterion);
           }),
+#endif
+  };
+}
+
+/// The corners after so many rounds.
+Pass<std::vector<std::uint32_t>> swap_rounds_pass(std::uint32_t rounds) {
+  using Corners = std::vector<std::uint32_t>;
+  return {
+      .host = on_host<Corners>([rounds](const PassInput& in, const Progress& progress) -> Result<Corners> {
+        SwapRoundsOptions options;
+        options.max_rounds = rounds;
+        VKMESH_TRY(const SwapRounds swapped, swap_rounds(in.mesh, in.positions, options, progress));
+        return Corners(swapped.mesh.origins().begin(), swapped.mesh.origins().end());
+      }),
+#ifdef VKMESH_HAS_VULKAN
+      .device = on_device<Corners, DeviceSwapRounds>(
+          [rounds](Recorder& recorder, DeviceMesh& mesh, DeviceSwapRounds& state) {
+            state.rounds = 0;  // from the mesh's connectivity each time
+            return record_swap_rounds(recorder, mesh, state, rounds, rounds);
+          },
+          [](const DeviceSwapRounds& state) { return state.corners.download(); }),
 #endif
   };
 }
@@ -367,6 +390,7 @@ const std::vector<PassRow>& pass_table() {
       collapse_costs_row("collapse-costs-end", "", CollapsePlacement::kEndpoint),
       swap_scores_row("swap-scores", "swap scores", SwapCriterion::kMinAngle),
       swap_scores_row("swap-scores-by-quality", "", SwapCriterion::kAspectRatio),
+      row("swap-rounds", "", {}, [](const PassInput&) { return swap_rounds_pass(8); }),
       smoothing_row("laplacian-smoothing", "Laplacian step", {.iterations = 10}),
       smoothing_row("taubin-smoothing", "", {.mu = -0.53f}),
       smoothing_row("cotangent-smoothing", "cotangent step",

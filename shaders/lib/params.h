@@ -14,6 +14,7 @@ namespace vkmesh::kernels {
 using uint = std::uint32_t;
 using Floats = DeviceAddress<float>;
 using Uints = DeviceAddress<std::uint32_t>;
+using Words = DeviceAddress<std::uint32_t>;
 }  // namespace vkmesh::kernels
 #define VKMESH_PARAMS(Name)   \
   namespace vkmesh::kernels { \
@@ -24,6 +25,7 @@ using Uints = DeviceAddress<std::uint32_t>;
 // clang-format off
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer Floats { float at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Uints { uint at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer Words { uint at[]; };
 // clang-format on
 #define VKMESH_PARAMS(Name) struct Name
 #endif

@@ -29,7 +29,7 @@ TEST_CASE("digests are checked against the list that was printed") {
   const std::string list = scratch.file("list.txt", printed.out);
   const Outcome report = vkmesh_run({"digest", "--check", list, "--device", "cpu"});
   CHECK(report.code == 0);
-  CHECK(rows_that_say(report.out, "the same bytes, 2 meshes") == 17);
+  CHECK(rows_that_say(report.out, "the same bytes, 2 meshes") == 18);
   CHECK_THAT(report.out,
              StartsWith("device ") && Contains("\nprogram ") && Contains("vkmesh " VKMESH_VERSION "; Linux"));
 
@@ -42,7 +42,7 @@ TEST_CASE("digests are checked against the list that was printed") {
   CHECK(refused.code == 4);
   CHECK_THAT(refused.err, Contains("1 digest of ") && Contains("differs: vertex-normals of " + in));
   // The report comes all the same.
-  CHECK(rows_that_say(refused.out, "the same bytes, 2 meshes") == 16);
+  CHECK(rows_that_say(refused.out, "the same bytes, 2 meshes") == 17);
   CHECK(rows_that_say(refused.out, "DIFFERS for 1 of 2 meshes, first " + in) == 1);
 }
 

@@ -74,6 +74,11 @@ DeviceMesh::Indices DeviceMesh::twins() {
   return once(*context_, twins_, [&] { return fill(*context_, twins_, mesh_->twins(), "twins"); });
 }
 
+DeviceMesh::Indices DeviceMesh::leading() {
+  return once(*context_, leading_,
+              [&] { return fill(*context_, leading_, mesh_->leadings(), "leading half-edges"); });
+}
+
 Result<void> DeviceMesh::upload_corners_of_vertices() {
   VKMESH_TRY(const VertexCorners corners, vertex_corners(*mesh_));
   VKMESH_CHECK(require_short(*context_, corners.offsets));

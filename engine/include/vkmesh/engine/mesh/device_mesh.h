@@ -45,6 +45,7 @@ class VKMESH_API DeviceMesh {
 
   [[nodiscard]] Indices corners();  ///< The vertex where each half-edge starts; three a face.
   [[nodiscard]] Indices twins();    ///< The twin of each half-edge; kInvalid on the boundary.
+  [[nodiscard]] Indices leading();  ///< HalfEdgeMesh::leadings(): one a vertex.
   /// VertexCorners: the half-edges that leave vertex v, ascending, are corner_half_edges[corner_offsets[v]]
   /// and so on up to corner_offsets[v + 1].
   [[nodiscard]] Indices corner_offsets();
@@ -65,8 +66,8 @@ class VKMESH_API DeviceMesh {
   std::uint32_t faces_ = 0;
   bool closed_ = false;
   DeviceArray<Vec3> positions_;
-  DeviceArray<std::uint32_t> corners_, twins_, corner_offsets_, corner_half_edges_, neighbour_offsets_,
-      neighbour_ids_, boundary_bits_;
+  DeviceArray<std::uint32_t> corners_, twins_, leading_, corner_offsets_, corner_half_edges_,
+      neighbour_offsets_, neighbour_ids_, boundary_bits_;
 };
 
 }  // namespace vkmesh
