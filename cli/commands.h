@@ -26,6 +26,7 @@ void add_normals(CLI::App& app, Program& program);
 void add_creases(CLI::App& app, Program& program);
 void add_curvature(CLI::App& app, Program& program);
 void add_smooth(CLI::App& app, Program& program);
+void add_optimize(CLI::App& app, Program& program);
 void add_simplify(CLI::App& app, Program& program);
 void add_render(CLI::App& app, Program& program);
 void add_compare(CLI::App& app, Program& program);

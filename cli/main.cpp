@@ -22,7 +22,8 @@ bool wants_json(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Reads, judges, shades, smooths and simplifies polygonal meshes, on the CPU or a Vulkan device.",
+      "Reads, judges, shades, smooths, optimises and simplifies polygonal meshes, on the CPU or a Vulkan "
+      "device.",
       "vkmesh");
   app.set_version_flag("--version", "vkmesh " VKMESH_VERSION);
   app.require_subcommand(1);
@@ -33,12 +34,12 @@ int run(int argc, char** argv) {
       "operation,\n5 no such device, 6 out of memory, 7 output not writable, 130 interrupted.\n"
       "'vkmesh SUBCOMMAND --help' shows the options of a subcommand and an example.");
   Program program;
-  for (const auto add :
-       {add_info, add_convert, add_normals, add_creases, add_curvature, add_smooth, add_simplify,
+  for (const auto add : {add_info, add_convert, add_normals, add_creases, add_curvature, add_smooth,
+                         add_optimize, add_simplify,
 #ifdef VKMESH_HAS_VULKAN
-        add_render,
+                         add_render,
 #endif
-        add_compare, add_bench, add_digest, add_devices})
+                         add_compare, add_bench, add_digest, add_devices})
     add(app, program);
 
   // The parser would only say that a subcommand is required.

@@ -47,3 +47,15 @@ noisy "$cgal/meshes/fandisk.off" 0.002 "$work/noisy.off"
 "$vkmesh" render "$work/noisy.off" "$work/laplacian.ply" "$work/bilateral.ply" "$out/smoothing_creases.png" \
   --size 420x360 --columns 3 --style flat --caption "with noise" --caption "Laplacian, 10 steps" \
   --caption "bilateral, 2 and 0.3"
+
+# Edge swaps: a torus with random diagonals, and the dragon at a tenth.
+awk -f docs/torus.awk </dev/null >"$work/torus.off"
+for criterion in max-min-angle valence curvature; do
+  "$vkmesh" optimize "$work/torus.off" "$work/$criterion.ply" --criterion $criterion --quiet
+done
+"$vkmesh" render "$work/torus.off" "$work/max-min-angle.ply" "$work/valence.ply" "$work/curvature.ply" "$out/swaps.png" \
+  --size 420x300 --columns 2 --style flat --caption "random diagonals" --caption "max-min angle" --caption valence \
+  --caption curvature
+"$vkmesh" optimize "$work/tenth.ply" "$work/swapped.ply" --max-relative-deviation 2e-4 --quiet
+"$vkmesh" render "$work/tenth.ply" "$work/swapped.ply" "$out/swaps_quality.png" --size 480x400 --color quality \
+  --style flat --caption "dragon, 10 %" --caption "max-min angle, at most 0.02 % off"

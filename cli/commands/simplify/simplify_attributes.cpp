@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <variant>
 
+#include "job/channel_numbers.h"
+
 namespace vkmesh::cli {
 namespace {
 
@@ -65,24 +67,6 @@ Result<Weights> weights_by_name(const std::vector<std::string>& given) {
     weights[named.first] = named.second;
   }
   return weights;
-}
-
-/// For each face a number for its value in the channel.
-std::vector<std::uint32_t> numbers_of_values(const Channel& channel) {
-  const std::size_t n = channel.components;
-  return std::visit(
-      [&](const auto& values) {
-        using Scalar = typename std::remove_cvref_t<decltype(values)>::value_type;
-        std::map<std::vector<Scalar>, std::uint32_t> known;
-        std::vector<std::uint32_t> numbers(values.size() / n);
-        for (std::size_t f = 0; f < numbers.size(); ++f) {
-          const auto first = values.begin() + static_cast<std::ptrdiff_t>(f * n);
-          const std::vector<Scalar> value(first, first + static_cast<std::ptrdiff_t>(n));
-          numbers[f] = known.try_emplace(value, static_cast<std::uint32_t>(known.size())).first->second;
-        }
-        return numbers;
-      },
-      channel.values);
 }
 
 /// How many of the edges between two faces have different values of the channel on their sides.
@@ -215,7 +199,7 @@ void SimplifyAttributes::find_borders(Job& job, const HalfEdgeMesh& half_edges) 
       continue;
     }
     borders_.push_back(channel.name);
-    const std::vector<std::uint32_t> numbers = numbers_of_values(channel);
+    const std::vector<std::uint32_t> numbers = numbers_of_values({&channel, 1});
     std::vector<std::uint32_t> number_of_corner(half_edges.half_edge_count());
     for (std::size_t c = 0; c < number_of_corner.size(); ++c) number_of_corner[c] = numbers[c / 3];
     tell_apart(number_of_corner);
