@@ -142,9 +142,10 @@ void check_exact_bilateral(const HalfEdgeMesh& mesh, std::span<const Vec3> point
   CHECK(differences(require(moved.positions().download()), *wanted) == 0);
 }
 
-// Under GPU-assisted validation and on SwiftShader a coarser one, mended: the fine one takes minutes there.
+// Under GPU-assisted validation, on SwiftShader and under the sanitizers a coarser one, mended: the fine one
+// takes minutes there.
 bool coarse_dragon() {
-  return test::gpu_assisted() || test::is_swiftshader(test::test_context());
+  return test::kSanitized || test::gpu_assisted() || test::is_swiftshader(test::test_context());
 }
 
 IndexedFaceSet dragon() {
