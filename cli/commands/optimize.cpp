@@ -290,7 +290,7 @@ void add_optimize(CLI::App& app, Program& program) {
       ->add_option(
           "--criterion", options->criteria,
           "What a swap makes better, see below; default max-min-angle. More than one may be given: their\n"
-          "weighted sum falls then, lengths in mean edge lengths; default weight 1")
+          "weighted sum falls then, lengths in about that of an edge; default weight 1")
       ->type_name("NAME[=WEIGHT]");
   command
       ->add_option("--keep-creases", options->crease_angle,

@@ -66,24 +66,16 @@ struct ScaledPoints {
 
 ScaledPoints scale(const SwapMesh& mesh, std::span<const Vec3> positions) {
   ScaledPoints result;
-  double sum = 0;
-  std::size_t count = 0;
   DVec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    const auto& v = mesh.face(4 * f).origin;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const DVec3 p(positions[v[i]]), e = DVec3(positions[v[(i + 1) % 3]]) - p;
-      sum += glm::dot(e, e);
-      ++count;
-      low = glm::min(low, p);
-      high = glm::max(high, p);
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+    for (const std::uint32_t v : mesh.face(4 * f).origin) {
+      low = glm::min(low, DVec3(positions[v]));
+      high = glm::max(high, DVec3(positions[v]));
     }
-  }
-  if (sum > 0) {
-    // The root of the mean square is that of the mean but for a factor near 1.
-    result.unit = std::exp2(std::floor(std::log2(std::sqrt(sum / static_cast<double>(count)))));
-    result.diagonal = glm::length(high - low);
-  }
+  if (mesh.face_count() > 0) result.diagonal = glm::length(high - low);
+  // Swaps do not change it, so that a second run finds the costs that the first left.
+  const double unit = result.diagonal / std::sqrt(static_cast<double>(mesh.face_count()));
+  if (unit > 0) result.unit = std::scalbn(1.0, std::ilogb(unit));
   result.points.resize(positions.size());
   parallel_ranges(positions.size(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) result.points[v] = DVec3(positions[v]) * (1 / result.unit);

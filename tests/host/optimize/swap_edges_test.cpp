@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -43,14 +44,16 @@ class Definition {
   Definition(std::vector<Triangle> triangles, const std::vector<Vec3>& points,
              const std::vector<Vec3>& normals, double unit = 0)
       : triangles_(std::move(triangles)), unit_(unit), normals_(normals) {
-    double sum = 0;
-    for (const Triangle& t : triangles_)
-      for (std::size_t i = 0; i < 3; ++i) {
-        const DVec3 e = DVec3(points[t[(i + 1) % 3]]) - DVec3(points[t[i]]);
-        sum += glm::dot(e, e);
-      }
-    if (unit_ == 0)
-      unit_ = std::exp2(std::floor(std::log2(std::sqrt(sum / (3 * static_cast<double>(triangles_.size()))))));
+    if (unit_ == 0) {
+      DVec3 low(points[triangles_[0][0]]), high = low;
+      for (const Triangle& t : triangles_)
+        for (const std::uint32_t v : t) {
+          low = glm::min(low, DVec3(points[v]));
+          high = glm::max(high, DVec3(points[v]));
+        }
+      const double size = glm::length(high - low) / std::sqrt(static_cast<double>(triangles_.size()));
+      unit_ = std::exp2(std::floor(std::log2(size)));
+    }
     for (const Vec3& p : points) points_.push_back(DVec3(p) / unit_);
     for (std::size_t f = 0; f < triangles_.size(); ++f)
       for (std::size_t i = 0; i < 3; ++i) {

@@ -18,10 +18,11 @@
 
 namespace vkmesh {
 
-/// What a swap is to lower. Lengths are in the mean edge length, rounded down to a power of two. A dihedral
-/// angle β is that between the normals of the two faces of an edge e, π at a face without area; boundary
-/// edges have none. At a vertex, over its edges and corners, |H| = ¼ Σ |e||β|, K = 2π − Σ corner angles (on
-/// the boundary π − Σ), and A is a third of its faces' area.
+/// What a swap is to lower. Lengths are in the diagonal of the bounding box over the
+/// root of the number of faces, which is near the length of an edge, rounded down to a power of two. A
+/// dihedral angle β is that between the normals of the two faces of an edge e, π at a face without area;
+/// boundary edges have none. At a vertex, over its edges and corners, |H| = ¼ Σ |e||β|, K = 2π − Σ corner
+/// angles (on the boundary π − Σ), and A is a third of its faces' area.
 enum class SwapCost : std::uint8_t {
   /// The least angle of the worse of the two triangles (lecture, "Delaunay triangulations": max-min angle).
   /// In
