@@ -2,7 +2,7 @@
 # random diagonals.
 function step() { return 2 * jitter * (rand() - 0.5) }
 BEGIN {
-  if (rings == "") { rings = 60; sides = 36; jitter = 0.33 }
+  if (rings == "") { rings = 24; sides = 32; jitter = 0.33 }
   srand(1)
   tau = 6.283185307179586
   print "OFF"
