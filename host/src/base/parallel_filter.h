@@ -2,41 +2,43 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <numeric>
 #include <vector>
 
 #include "base/parallel.h"
 
 namespace vkmesh::detail {
 
-/// The numbers below `count` that f(number) is true for, in ascending order; f is called on any threads.
+/// The numbers below `count` that f(number) is true for, in ascending order; f is called once for each, on
+/// any threads.
 template <class F>
 std::vector<std::uint32_t> collect(std::size_t count, F&& f) {
-  struct List {
-    std::vector<std::uint32_t> all;
-    List& operator+=(const List& after) {
-      all.insert(all.end(), after.all.begin(), after.all.end());
-      return *this;
+  constexpr std::size_t kBlock = std::size_t{1} << 15;
+  const std::size_t blocks = (count + kBlock - 1) / kBlock;
+  // Each block's numbers where it begins, and where they will stand together.
+  const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(count);
+  std::vector<std::size_t> begin(blocks + 1, 0);
+  parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b) {
+      std::uint32_t* const to = &found[b * kBlock];
+      std::size_t size = 0;  // branchless: the branch is unpredictable
+      for (std::size_t i = b * kBlock; i < std::min((b + 1) * kBlock, count); ++i) {
+        to[size] = static_cast<std::uint32_t>(i);
+        size += f(static_cast<std::uint32_t>(i)) ? 1 : 0;
+      }
+      begin[b + 1] = size;
     }
-  };
-  constexpr std::size_t kGrain = 1 << 15, kBlock = 1 << 10;
-  return parallel_sum<List>(count, kGrain,
-                            [&](std::size_t begin, std::size_t end) {
-                              List list;
-                              std::array<std::uint32_t, kBlock> some;
-                              for (std::size_t first = begin; first < end; first += kBlock) {
-                                std::size_t found = 0;  // branchless: the branch is unpredictable
-                                for (std::size_t i = first; i < std::min(first + kBlock, end); ++i) {
-                                  some[found] = static_cast<std::uint32_t>(i);
-                                  found += f(some[found]) ? 1 : 0;
-                                }
-                                list.all.insert(list.all.end(), some.begin(), some.begin() + found);
-                              }
-                              return list;
-                            })
-      .all;
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> all(begin.back());
+  parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b)
+      std::copy_n(&found[b * kBlock], begin[b + 1] - begin[b], all.data() + begin[b]);
+  });
+  return all;
 }
 
 }  // namespace vkmesh::detail
