@@ -1,6 +1,7 @@
 // The formats, as the public functions of mesh_io.h see them.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -35,8 +36,7 @@ class Positions {
     const DVec3 error = DVec3(rounded) - moved;
     // Here and in bounds a coordinate that is not a number counts for nothing.
     bounds_.add(exact);
-    for (int axis = 0; axis < 3; ++axis)
-      if (std::abs(error[axis]) > error_) error_ = std::abs(error[axis]);
+    for (int axis = 0; axis < 3; ++axis) error_ = std::max(error_, std::abs(error[axis]));
     return rounded;
   }
   void add(const Positions& other);

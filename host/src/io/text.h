@@ -31,8 +31,10 @@ class TextCursor {
 
   /// Blanks, and a comment, within the line.
   void skip_blanks() {
-    while (at_ != end_ && is_blank(*at_)) ++at_;
-    if (at_comment()) skip_to_line_end();
+    // Most often there is one blank, or none, before a word or the end of the line.
+    if (at_ != end_ && *at_ == ' ') ++at_;
+    if (at_ != end_ && ((static_cast<unsigned char>(*at_) > ' ' && *at_ != comment_) || *at_ == '\n')) return;
+    skip_any_blanks();
   }
 
   /// Blanks, comments and line ends: to the next content, or the end of the text.
@@ -132,6 +134,11 @@ class TextCursor {
   bool at_comment() const {
     return comment_ != 0 && at_ != end_ && *at_ == comment_ &&
            (at_ == begin_ || is_blank(at_[-1]) || ends_line(at_[-1]) || is_digit(at_[-1]));
+  }
+
+  [[gnu::noinline]] void skip_any_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_comment()) skip_to_line_end();
   }
 
   /// "1.#INF", "-1.#IND", "1.#QNAN00": what the runtime library of Visual C++ prints for numbers that are

@@ -170,9 +170,9 @@ class ObjReader {
 
   /// Blanks, and line ends that a backslash hides.
   void skip_continuation() {
-    for (text_.skip_blanks();; text_.skip_blanks()) {
+    for (text_.skip_blanks(); !text_.at_end() && *text_.at() == '\\'; text_.skip_blanks()) {
       const TextCursor before = text_;
-      if (!text_.accept('\\')) return;
+      text_.accept('\\');
       text_.skip_blanks();
       if (!text_.at_line_end() || text_.at_end()) {
         text_ = before;
