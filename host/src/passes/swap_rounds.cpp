@@ -69,21 +69,28 @@ class Rounds {
         best_(positions.size()),
         changed_(corners_.size() / 3, 0),
         selected_(corners_.size(), 0),
-        source_(corners_.size()) {
+        source_(corners_.size()),
+        seen_(positions.size(), 0) {
     std::iota(source_.begin(), source_.end(), 0u);
     locked_.resize(corners_.size(), 0);
+    for (std::uint32_t h = 0; h < twins_.size(); ++h)
+      if (stands_for_edge(h)) active_.push_back(h);
   }
 
   /// The number of swaps of the next round.
   std::uint32_t run() {
     ++round_;
-    parallel(corners_.size(), [&](std::uint32_t h) { find_gain(h); });
-    parallel(best_.size(), [&](std::uint32_t v) { find_best(v); });
-    parallel(corners_.size(), [&](std::uint32_t h) { select(h); });
-    parallel(corners_.size(), [&](std::uint32_t h) {
-      if (selected_[h] == round_) flip(h);
+    parallel(active_.size(), [&](std::size_t i) { find_gain(active_[i]); });
+    std::erase_if(active_, [&](std::uint32_t h) { return gains_[h] == 0.0f; });
+    parallel(vertices_of_active(), [&](std::size_t i) { find_best(vertices_[i]); });
+    parallel(active_.size(), [&](std::size_t i) { select(active_[i]); });
+    const auto swaps = [&](std::uint32_t h) { return selected_[h] == round_; };
+    parallel(active_.size(), [&](std::size_t i) {
+      if (swaps(active_[i])) flip(active_[i]);
     });
-    return static_cast<std::uint32_t>(std::ranges::count(selected_, round_));
+    const auto count = static_cast<std::uint32_t>(std::ranges::count_if(active_, swaps));
+    find_next_active();
+    return count;
   }
   [[nodiscard]] std::vector<std::uint32_t> take_sources() { return std::move(source_); }
   [[nodiscard]] HalfEdgeMesh take_mesh() {
@@ -94,17 +101,44 @@ class Rounds {
   template <class F>
   static void parallel(std::size_t count, F&& f) {
     detail::parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) f(i);
+      for (std::size_t i = begin; i < end; ++i) f(i);
     });
   }
 
   // The smaller half-edge stands for an edge.
   [[nodiscard]] bool stands_for_edge(std::uint32_t h) const { return twins_[h] != kInvalid && h < twins_[h]; }
 
+  // The vertices of the quadrilaterals of active edges, each once; their number.
+  std::size_t vertices_of_active() {
+    vertices_.clear();
+    for (const std::uint32_t h : active_)
+      for (const std::uint32_t corner : {h, twins_[h], previous(h), previous(twins_[h])}) {
+        const std::uint32_t v = corners_[corner];
+        if (seen_[v] == round_) continue;
+        seen_[v] = round_;
+        vertices_.push_back(v);
+      }
+    return vertices_.size();
+  }
+  // Edges that gained and did not swap, and those of triangles that did: others gain nothing, as before. No
+  // edge is of two quadrilaterals that were swapped.
+  void find_next_active() {
+    next_active_.clear();
+    for (const std::uint32_t h : active_) {
+      if (selected_[h] == round_) {
+        const std::uint32_t t = twins_[h];
+        for (const std::uint32_t side : {h, next(h), previous(h), next(t), previous(t)})
+          if (twins_[side] != kInvalid) next_active_.push_back(std::min(side, twins_[side]));
+      } else if (changed_[h / 3] != round_ && changed_[twins_[h] / 3] != round_) {
+        next_active_.push_back(h);
+      }
+    }
+    active_.swap(next_active_);
+  }
+
   // What does not change stays from round to round, but for whether the new edge exists.
   void find_gain(std::uint32_t h) {
     const std::uint32_t t = twins_[h];
-    if (!stands_for_edge(h)) return;
     const std::uint32_t a = corners_[previous(h)], b = corners_[previous(t)];
     if (round_ == 1 || changed_[h / 3] == round_ - 1 || changed_[t / 3] == round_ - 1)
       gains_[h] = locked_[h] != 0 || locked_[t] != 0 ? 0.0f : gain_of(corners_[h], corners_[t], a, b);
@@ -166,7 +200,7 @@ class Rounds {
     best_[v] = ended ? best : kInvalid;
   }
   void select(std::uint32_t h) {
-    if (!stands_for_edge(h) || !(gains_[h] > 0.0f)) return;
+    if (!(gains_[h] > 0.0f)) return;
     const std::uint32_t t = twins_[h];
     for (const std::uint32_t corner : {h, t, previous(h), previous(t)})
       if (best_[corners_[corner]] != h) return;
@@ -210,6 +244,8 @@ class Rounds {
   std::vector<std::uint32_t> corners_, twins_, leading_, locked_;
   std::vector<float> gains_;
   std::vector<std::uint32_t> best_, changed_, selected_, source_;
+  std::vector<std::uint32_t> active_, next_active_;  // by the smaller half-edges
+  std::vector<std::uint32_t> vertices_, seen_;       // seen_: by vertex, the last round
   std::uint32_t round_ = 0;
 };
 
