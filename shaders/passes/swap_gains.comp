@@ -4,17 +4,12 @@
 // host/src/passes/swap_rounds.cpp, find_gain().
 #include "lib/kernel.glsl"
 #include "lib/half_edges.glsl"
+#include "lib/swap_geometry.glsl"
 #include "passes/swap_rounds_params.h"
 
 VKMESH_PUSH_CONSTANTS(SwapGainsParams);
 
-float smaller(float a, float b) { return b < a ? b : a; }
 float larger(float a, float b) { return b < a ? a : b; }
-
-float squared_distance(vec3 a, vec3 b) {
-  precise vec3 apart = b - a;
-  return squared_length(zero_below(apart, VKMESH_TINY_LENGTH));
-}
 
 float triangle_score(float a, float b, float c) {
   const float low = smaller(a, b), high = larger(a, b);
@@ -36,12 +31,6 @@ float triangle_score(float a, float b, float c) {
   precise float sides = sum + 1.0;
   precise float quality = root(threefold) * reciprocal(sides);
   return p.criterion == VKMESH_SWAP_ROUNDS_BY_ANGLE ? sine : quality;
-}
-
-bool faces_away(vec3 unit, vec3 from) {
-  const vec3 other = unit_vector(from);
-  precise float along = (unit.x * other.x + unit.y * other.y) + unit.z * other.z;
-  return !(along > 0.0);
 }
 
 float gain_of(uint from, uint to, uint left, uint right) {

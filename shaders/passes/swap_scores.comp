@@ -3,14 +3,10 @@
 // What swapping each edge gains; the thread of the smaller half-edge writes both. Twin of
 // host/src/passes/swap_scores.cpp.
 #include "lib/kernel.glsl"
+#include "lib/swap_geometry.glsl"
 #include "passes/swap_scores_params.h"
 
 VKMESH_PUSH_CONSTANTS(SwapScoresParams);
-
-float squared_distance(vec3 a, vec3 b) {
-  precise vec3 apart = b - a;
-  return squared_length(zero_below(apart, VKMESH_TINY_LENGTH));
-}
 
 float least_angle(vec3 a, vec3 b, vec3 c, float twice_area) {
   const float at_a = corner_angle(corner_product(a, b, c), twice_area);
@@ -37,14 +33,6 @@ Triangle triangle(vec3 a, vec3 b, vec3 c) {
   return Triangle(area, p.criterion == VKMESH_SWAP_BY_ANGLE ? least_angle(a, b, c, twice_area)
                                                             : quality(a, b, c, twice_area));
 }
-
-bool faces_away(vec3 unit, vec3 from) {
-  const vec3 other = unit_vector(from);
-  precise float along = (unit.x * other.x + unit.y * other.y) + unit.z * other.z;
-  return !(along > 0.0);
-}
-
-float smaller(float a, float b) { return b < a ? b : a; }
 
 void main() {
   VKMESH_THREAD_INDEX(h);

@@ -8,6 +8,7 @@
 #include "base/distinct_rows.h"
 #include "decimation/setup/check_options.h"
 #include "decimation/setup/part_surface.h"
+#include "mesh/triangle_half_edges.h"
 
 namespace vkmesh {
 namespace {
@@ -23,11 +24,6 @@ std::vector<std::uint32_t> first_at_place(std::span<const Vec3> points) {
     first[v] = first_of_row[row];
   }
   return first;
-}
-
-/// The corner that ends the edge which starts at corner h.
-std::uint32_t end_of(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
 }
 
 Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const std::uint32_t> indices,
@@ -71,7 +67,8 @@ Result<DecimatedIndexBuffer> run(std::span<const Vec3> points, std::span<const s
   }
   welded.locked.edges.clear();
   for (const std::uint32_t h : options.locked.edges)
-    for (const std::uint32_t c : {h, end_of(h)}) welded.locked.vertices.push_back(first[indices[c]]);
+    for (const std::uint32_t c : {h, detail::next_in_triangle(h)})
+      welded.locked.vertices.push_back(first[indices[c]]);
 
   auto decimated = decimate(TriangleSurface{points, corners}, welded, progress);
   if (!decimated && decimated.error().code == ErrorCode::kUnsuitable) {

@@ -8,17 +8,14 @@
 #include <vkmesh/math/arithmetic.h>
 #include <vkmesh/optimize/intrinsic_triangulation.h>
 
+#include "mesh/triangle_half_edges.h"
 #include "optimize/triangle_costs.h"
 
 namespace vkmesh {
 namespace {
 
-std::uint32_t next(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-std::uint32_t previous(std::uint32_t h) {
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
+using detail::next_in_triangle;
+using detail::previous_in_triangle;
 
 double squared(double x) {
   return x * x;
@@ -55,14 +52,15 @@ Result<IntrinsicTriangulation> IntrinsicTriangulation::create(const HalfEdgeMesh
     double sum = 0;
     for (std::uint32_t h = 0; h < half_edges; ++h) {
       // Of both half-edges alike, whichever comes first.
-      const DVec3 p(positions[result.origins_[h]]), q(positions[result.origins_[next(h)]]);
+      const DVec3 p(positions[result.origins_[h]]), q(positions[result.origins_[next_in_triangle(h)]]);
       result.lengths_[h] = glm::length(q - p);
       sum += result.lengths_[h];
     }
     const double least = half_edges == 0 ? 0 : slack * sum / static_cast<double>(half_edges);
     for (std::uint32_t h = 0; h < half_edges; ++h) {
       const auto& l = result.lengths_;
-      result.added_length_ = std::max(result.added_length_, least + l[h] - l[next(h)] - l[previous(h)]);
+      result.added_length_ =
+          std::max(result.added_length_, least + l[h] - l[next_in_triangle(h)] - l[previous_in_triangle(h)]);
     }
     for (double& length : result.lengths_) length += result.added_length_;
 
@@ -78,12 +76,12 @@ Result<IntrinsicTriangulation> IntrinsicTriangulation::create(const HalfEdgeMesh
 }
 
 double IntrinsicTriangulation::corner_angle(std::uint32_t h) const {
-  return Corner(lengths_[h], lengths_[previous(h)], lengths_[next(h)]).angle();
+  return Corner(lengths_[h], lengths_[previous_in_triangle(h)], lengths_[next_in_triangle(h)]).angle();
 }
 
 double IntrinsicTriangulation::cotangent_sum(std::uint32_t h) const {
   const auto across = [&](std::uint32_t e) {
-    return Corner(lengths_[next(e)], lengths_[previous(e)], lengths_[e]).cotangent();
+    return Corner(lengths_[next_in_triangle(e)], lengths_[previous_in_triangle(e)], lengths_[e]).cotangent();
   };
   return across(h) + across(twins_[h]);
 }
@@ -93,15 +91,16 @@ bool IntrinsicTriangulation::can_flip(std::uint32_t h) const {
   if (t == kInvalid || h / 3 == t / 3) return false;
   // Convex at both ends: the two angles there come to less than π.
   const auto is_convex = [&](std::uint32_t left, std::uint32_t right) {
-    const Corner a(lengths_[left], lengths_[previous(left)], lengths_[next(left)]),
-        b(lengths_[right], lengths_[previous(right)], lengths_[next(right)]);
+    const Corner a(lengths_[left], lengths_[previous_in_triangle(left)], lengths_[next_in_triangle(left)]),
+        b(lengths_[right], lengths_[previous_in_triangle(right)], lengths_[next_in_triangle(right)]);
     return a.area * b.product + a.product * b.area > 0;  // the sine of the sum
   };
-  return is_convex(h, next(t)) && is_convex(t, next(h));
+  return is_convex(h, next_in_triangle(t)) && is_convex(t, next_in_triangle(h));
 }
 
 void IntrinsicTriangulation::flip(std::uint32_t h) {
-  const std::uint32_t t = twins_[h], nh = next(h), ph = previous(h), nt = next(t), pt = previous(t);
+  const std::uint32_t t = twins_[h], nh = next_in_triangle(h), ph = previous_in_triangle(h),
+                      nt = next_in_triangle(t), pt = previous_in_triangle(t);
   const std::uint32_t p = origins_[h], q = origins_[t], a = origins_[ph], b = origins_[pt];
   const double pq = lengths_[h], qa = lengths_[nh], ap = lengths_[ph], pb = lengths_[nt], bq = lengths_[pt];
   // Unfolded: p at 0, q on the axis, a above it and b below.
@@ -172,11 +171,13 @@ Result<IntrinsicTriangulation::Flips> IntrinsicTriangulation::flip_to_delaunay(c
         if (twins_[e] == kInvalid || !(cotangent_sum(e) < -kLeast) || !can_flip(e)) continue;
         if (result.flips == most) return Flips{result.flips, false};
         // The sides move to other half-edges: what waited by an old number waits by the new one.
-        for (const std::uint32_t side : {next(e), previous(e), next(twins_[e]), previous(twins_[e])})
+        for (const std::uint32_t side : {next_in_triangle(e), previous_in_triangle(e),
+                                         next_in_triangle(twins_[e]), previous_in_triangle(twins_[e])})
           if (twins_[side] != kInvalid) waits[std::min(side, twins_[side])] = false;
         flip(e);
         ++result.flips;
-        for (const std::uint32_t side : {next(e), previous(e), next(twins_[e]), previous(twins_[e])})
+        for (const std::uint32_t side : {next_in_triangle(e), previous_in_triangle(e),
+                                         next_in_triangle(twins_[e]), previous_in_triangle(twins_[e])})
           add(side);
       }
     }

@@ -10,6 +10,7 @@
 #include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "math/quadric.h"
+#include "mesh/triangle_half_edges.h"
 #include "passes/pass_input.h"
 #include "passes/per_edge_values.h"
 #include "simd/target_clones.h"
@@ -197,7 +198,7 @@ Result<std::vector<float>> collapse_costs(const HalfEdgeMesh& mesh, std::span<co
       return zero_below((positions[v] - options.centre) * options.scale, VKMESH_TINY_DIRECTION);
     };
     const auto take = [&](Edges& block, std::size_t i, std::uint32_t h) {
-      const std::uint32_t p = corners[h], q = corners[h % 3 == 2 ? h - 2 : h + 1];
+      const std::uint32_t p = corners[h], q = corners[detail::next_in_triangle(h)];
       const Vec3 d = zero_below(scaled(q) - scaled(p), VKMESH_TINY_DIRECTION);
       for (std::size_t k = 0; k < 6; ++k) {
         block.p[k][i] = quadrics[p][k];

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/prefetch.h"
 #include "math/vector_kernels.h"
+#include "mesh/triangle_half_edges.h"
 #include "passes/pass_input.h"
 #include "passes/raw_normals.h"
 
@@ -30,10 +31,6 @@ constexpr std::size_t kSideBySide = 128;
 struct Sides {
   std::array<Vec3, kSideBySide> left, right, along;
 };
-
-std::uint32_t next_of(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
 
 }  // namespace
 
@@ -69,7 +66,7 @@ Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const
           const std::uint32_t h = block.edges[first + i];
           sides.left[i] = normals[h / 3];
           sides.right[i] = normals[twins[h] / 3];
-          sides.along[i] = positions[corners[next_of(h)]] - positions[corners[h]];
+          sides.along[i] = positions[corners[detail::next_in_triangle(h)]] - positions[corners[h]];
         }
         const auto angles = std::span(block.angles).subspan(first, size);
         detail::dihedral_angles(std::span(sides.left).first(size), std::span(sides.right).first(size),
@@ -83,7 +80,7 @@ Result<DihedralAngles> dihedral_angles(const HalfEdgeMesh& mesh, std::span<const
     const auto spread = [&](std::size_t, std::size_t, const Block& block) {
       for (std::size_t i = 0; i < block.count; ++i) {
         const std::uint32_t h = block.edges[i];
-        for (const std::uint32_t end : {corners[h], corners[next_of(h)]})
+        for (const std::uint32_t end : {corners[h], corners[detail::next_in_triangle(h)]})
           result.vertex_maximum[end] = std::max(result.vertex_maximum[end], std::fabs(block.angles[i]));
       }
     };

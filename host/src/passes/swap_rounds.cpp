@@ -9,29 +9,25 @@
 #include <vkmesh/passes/swap_rounds.h>
 
 #include "base/parallel.h"
+#include "mesh/triangle_half_edges.h"
 #include "passes/pass_input.h"
+#include "passes/swap_geometry.h"
 
 namespace vkmesh {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 13;
+using detail::faces_away;
+using detail::next_in_triangle;
+using detail::previous_in_triangle;
+using detail::squared_distance;
 
-std::uint32_t next(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-std::uint32_t previous(std::uint32_t h) {
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
+constexpr std::size_t kGrain = std::size_t{1} << 13;
 
 float smaller(float a, float b) {
   return b < a ? b : a;
 }
 float larger(float a, float b) {
   return b < a ? a : b;
-}
-
-float squared_distance(Vec3 a, Vec3 b) {
-  return squared_length(zero_below(b - a, VKMESH_TINY_LENGTH));
 }
 
 /// The score of a triangle by the squares of its sides, the same bits in any order: the square of the sine of
@@ -49,11 +45,6 @@ float triangle_score(SwapCriterion criterion, float a, float b, float c) {
   const float positive = area > 0.0f ? area : 0.0f;  // 16 area² / longest⁴
   if (criterion == SwapCriterion::kMinAngle) return positive * exact::reciprocal(4.0f * y);
   return exact::root(3.0f * positive) * exact::reciprocal(sum + 1.0f);
-}
-
-bool faces_away(Vec3 unit, Vec3 from) {
-  const Vec3 other = unit_vector(from);
-  return !((unit.x * other.x + unit.y * other.y) + unit.z * other.z > 0.0f);
 }
 
 class Rounds {
@@ -112,7 +103,8 @@ class Rounds {
   std::size_t vertices_of_active() {
     vertices_.clear();
     for (const std::uint32_t h : active_)
-      for (const std::uint32_t corner : {h, twins_[h], previous(h), previous(twins_[h])}) {
+      for (const std::uint32_t corner :
+           {h, twins_[h], previous_in_triangle(h), previous_in_triangle(twins_[h])}) {
         const std::uint32_t v = corners_[corner];
         if (seen_[v] == round_) continue;
         seen_[v] = round_;
@@ -127,7 +119,8 @@ class Rounds {
     for (const std::uint32_t h : active_) {
       if (selected_[h] == round_) {
         const std::uint32_t t = twins_[h];
-        for (const std::uint32_t side : {h, next(h), previous(h), next(t), previous(t)})
+        for (const std::uint32_t side :
+             {h, next_in_triangle(h), previous_in_triangle(h), next_in_triangle(t), previous_in_triangle(t)})
           if (twins_[side] != kInvalid) next_active_.push_back(std::min(side, twins_[side]));
       } else if (changed_[h / 3] != round_ && changed_[twins_[h] / 3] != round_) {
         next_active_.push_back(h);
@@ -139,7 +132,7 @@ class Rounds {
   // What does not change stays from round to round, but for whether the new edge exists.
   void find_gain(std::uint32_t h) {
     const std::uint32_t t = twins_[h];
-    const std::uint32_t a = corners_[previous(h)], b = corners_[previous(t)];
+    const std::uint32_t a = corners_[previous_in_triangle(h)], b = corners_[previous_in_triangle(t)];
     if (round_ == 1 || changed_[h / 3] == round_ - 1 || changed_[t / 3] == round_ - 1)
       gains_[h] = locked_[h] != 0 || locked_[t] != 0 ? 0.0f : gain_of(corners_[h], corners_[t], a, b);
     // A gain whose sign is turned waits until that edge has gone.
@@ -170,22 +163,23 @@ class Rounds {
     if (h == kInvalid) return true;
     for (std::uint32_t steps = 0; steps < kMaxSwapValence; ++steps) {
       if (visit(h)) return true;
-      h = twins_[previous(h)];
+      h = twins_[previous_in_triangle(h)];
       if (h == kInvalid || h == leading_[v]) return true;
     }
     return false;
   }
   [[nodiscard]] bool has_edge(std::uint32_t a, std::uint32_t b) const {
     bool found = false;
-    const bool ended = walk(
-        a, [&](std::uint32_t h) { return found = corners_[next(h)] == b || corners_[previous(h)] == b; });
+    const bool ended = walk(a, [&](std::uint32_t h) {
+      return found = corners_[next_in_triangle(h)] == b || corners_[previous_in_triangle(h)] == b;
+    });
     return found || !ended;
   }
   void find_best(std::uint32_t v) {
     std::uint32_t best = kInvalid;
     float most = 0.0f;
     const bool ended = walk(v, [&](std::uint32_t h) {
-      for (const std::uint32_t side : {h, next(h), previous(h)}) {
+      for (const std::uint32_t side : {h, next_in_triangle(h), previous_in_triangle(h)}) {
         const std::uint32_t t = twins_[side];
         if (t == kInvalid) continue;
         const std::uint32_t e = std::min(side, t);
@@ -202,13 +196,14 @@ class Rounds {
   void select(std::uint32_t h) {
     if (!(gains_[h] > 0.0f)) return;
     const std::uint32_t t = twins_[h];
-    for (const std::uint32_t corner : {h, t, previous(h), previous(t)})
+    for (const std::uint32_t corner : {h, t, previous_in_triangle(h), previous_in_triangle(t)})
       if (best_[corners_[corner]] != h) return;
     selected_[h] = round_;
   }
   // As EditMesh::flip() does.
   void flip(std::uint32_t h) {
-    const std::uint32_t t = twins_[h], nh = next(h), ph = previous(h), nt = next(t), pt = previous(t);
+    const std::uint32_t t = twins_[h], nh = next_in_triangle(h), ph = previous_in_triangle(h),
+                        nt = next_in_triangle(t), pt = previous_in_triangle(t);
     const std::uint32_t p = corners_[h], q = corners_[t], a = corners_[ph], b = corners_[pt];
     const std::uint32_t beyond_qa = twins_[nh], beyond_ap = twins_[ph], beyond_pb = twins_[nt],
                         beyond_bq = twins_[pt];

@@ -5,14 +5,14 @@
 
 #include "passes/pass_input.h"
 #include "passes/per_edge_values.h"
+#include "passes/swap_geometry.h"
 #include "simd/target_clones.h"
 
 namespace vkmesh {
 namespace {
 
-float squared_distance(Vec3 a, Vec3 b) {
-  return squared_length(zero_below(b - a, VKMESH_TINY_LENGTH));
-}
+using detail::faces_away;
+using detail::squared_distance;
 
 float least_angle(Vec3 a, Vec3 b, Vec3 c, float twice_area) {
   const float at_a = corner_angle(corner_product(a, b, c), twice_area);
@@ -39,11 +39,6 @@ Triangle triangle(Vec3 a, Vec3 b, Vec3 c) {
   result.score =
       criterion == SwapCriterion::kMinAngle ? least_angle(a, b, c, twice_area) : quality(a, b, c, twice_area);
   return result;
-}
-
-bool faces_away(Vec3 unit, Vec3 from) {
-  const Vec3 other = unit_vector(from);
-  return !((unit.x * other.x + unit.y * other.y) + unit.z * other.z > 0.0f);
 }
 
 // The edge runs from p to q; `left` and `right` are the corners opposite to it.

@@ -20,6 +20,12 @@ TEST_CASE("least angles of triangles are those of known ones", "[analysis]") {
   CHECK(two->mean == Approx((right + flat) / 2).epsilon(1e-6));
   CHECK(two->below_30_degrees == 1);
   CHECK(two->below_5_degrees == 1);
+  // Whichever corner comes first.
+  for (int turn = 0; turn < 2; ++turn) {
+    set.corners = {set.corners[1], set.corners[2], set.corners[0],
+                   set.corners[4], set.corners[5], set.corners[3]};
+    CHECK(triangle_angles(test::half_edges(set), set.points)->mean == Approx(two->mean).epsilon(1e-12));
+  }
   const auto tetrahedron = triangle_angles(test::half_edges(test::tetrahedron()), test::tetrahedron().points);
   REQUIRE(tetrahedron.has_value());
   CHECK(tetrahedron->below_30_degrees == 0);

@@ -16,17 +16,14 @@
 #include <vkmesh/optimize/intrinsic_triangulation.h>
 #include <vkmesh/optimize/swap_edges.h>
 
+#include "mesh/triangle_half_edges.h"
 #include "support/shapes.h"
 
 namespace vkmesh {
 namespace {
 
-std::uint32_t next(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-std::uint32_t previous(std::uint32_t h) {
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
+using detail::next_in_triangle;
+using detail::previous_in_triangle;
 
 IntrinsicTriangulation intrinsic(const IndexedFaceSet& set, double slack = 1e-6) {
   auto result = IntrinsicTriangulation::create(test::half_edges(set), set.points, slack);
@@ -50,11 +47,11 @@ void check(const IntrinsicTriangulation& t, const IntrinsicTriangulation& first)
   std::vector<double> sums(t.vertex_count(), 0);
   for (std::uint32_t h = 0; h < t.half_edge_count(); ++h) {
     const std::uint32_t twin = t.twins()[h];
-    REQUIRE(t.lengths()[h] < t.lengths()[next(h)] + t.lengths()[previous(h)]);
+    REQUIRE(t.lengths()[h] < t.lengths()[next_in_triangle(h)] + t.lengths()[previous_in_triangle(h)]);
     sums[t.origins()[h]] += t.corner_angle(h);
     if (twin == kInvalid) continue;
     REQUIRE(t.twins()[twin] == h);
-    REQUIRE(t.origins()[twin] == t.origins()[next(h)]);
+    REQUIRE(t.origins()[twin] == t.origins()[next_in_triangle(h)]);
     REQUIRE(t.lengths()[twin] == t.lengths()[h]);
   }
   for (std::size_t v = 0; v < sums.size(); ++v) {
@@ -64,7 +61,7 @@ void check(const IntrinsicTriangulation& t, const IntrinsicTriangulation& first)
   CHECK(area_of(t) == Approx(area_of(first)).epsilon(1e-9));
   // Signposts: around a vertex, each half-edge leaves by the angle between after the one before.
   for (std::uint32_t h = 0; h < t.half_edge_count(); ++h) {
-    const std::uint32_t after = t.twins()[previous(h)];
+    const std::uint32_t after = t.twins()[previous_in_triangle(h)];
     if (after == kInvalid) continue;
     const double sum = t.angle_sums()[t.origins()[h]];
     const double turn = std::remainder(t.directions()[after] - t.directions()[h] - t.corner_angle(h), sum);
@@ -134,12 +131,13 @@ TEST_CASE("a flat mesh has the Delaunay triangulation of the plane inside", "[op
   const auto edges = [](std::span<const std::uint32_t> origins) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> all;
     for (std::uint32_t h = 0; h < origins.size(); ++h)
-      all.emplace(std::min(origins[h], origins[next(h)]), std::max(origins[h], origins[next(h)]));
+      all.emplace(std::min(origins[h], origins[next_in_triangle(h)]),
+                  std::max(origins[h], origins[next_in_triangle(h)]));
     return all;
   };
   CHECK(edges(t.origins()) == edges(plane->mesh.origins()));
   for (std::uint32_t h = 0; h < t.half_edge_count(); ++h) {
-    const Vec3 p = grid.points[t.origins()[h]], q = grid.points[t.origins()[next(h)]];
+    const Vec3 p = grid.points[t.origins()[h]], q = grid.points[t.origins()[next_in_triangle(h)]];
     CHECK(t.lengths()[h] == Approx(glm::length(DVec3(q) - DVec3(p))).epsilon(1e-9));
   }
 }
@@ -151,11 +149,11 @@ TEST_CASE("flips across the edge of a box have the lengths of its unfolding", "[
   set.corners = {0, 1, 2, 0, 2, 3, 3, 2, 4, 3, 4, 5};
   IntrinsicTriangulation t = intrinsic(set);
   std::uint32_t edge = 0;
-  while (!(t.origins()[edge] == 2 && t.origins()[next(edge)] == 3)) ++edge;
+  while (!(t.origins()[edge] == 2 && t.origins()[next_in_triangle(edge)] == 3)) ++edge;
   REQUIRE(t.can_flip(edge));
   t.flip(edge);
   CHECK(t.lengths()[edge] == Approx(std::sqrt(5.0)));
-  CHECK(std::set{t.origins()[edge], t.origins()[next(edge)]} == std::set<std::uint32_t>{0, 4});
+  CHECK(std::set{t.origins()[edge], t.origins()[next_in_triangle(edge)]} == std::set<std::uint32_t>{0, 4});
 }
 
 TEST_CASE("intrinsic triangulations of degenerate surfaces are defined", "[optimize]") {

@@ -9,16 +9,10 @@
 
 #include "base/disjoint_sets.h"
 #include "mesh/edge_records.h"
+#include "mesh/triangle_half_edges.h"
 
 namespace vkmesh::detail {
 namespace {
-
-std::uint32_t next(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-std::uint32_t previous(std::uint32_t h) {
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
 
 class Parting {
  public:
@@ -61,7 +55,7 @@ class Parting {
           if (mate_[h] == kInvalid) continue;
           mate_[mate_[h]] = kInvalid;
           mate_[h] = kInvalid;
-          result_.parted[corners_[h]] = result_.parted[corners_[next(h)]] = 1;
+          result_.parted[corners_[h]] = result_.parted[corners_[next_in_triangle(h)]] = 1;
           again = true;
         }
       });
@@ -79,11 +73,11 @@ class Parting {
   }
 
   [[nodiscard]] std::uint32_t end_at(std::uint32_t h, std::uint32_t point) const {
-    return corners_[h] == point ? h : next(h);
+    return corners_[h] == point ? h : next_in_triangle(h);
   }
   /// Whether faces at an edge have their third corners at one point: each is the other's reverse.
   [[nodiscard]] bool alike(std::uint32_t h, std::uint32_t g) const {
-    return corners_[previous(h)] == corners_[previous(g)];
+    return corners_[previous_in_triangle(h)] == corners_[previous_in_triangle(g)];
   }
   bool join(std::uint32_t h, std::uint32_t g) {
     if (alike(h, g)) return false;
@@ -97,7 +91,7 @@ class Parting {
     at_edge_.clear();
     for (const std::uint64_t use : uses) {
       const auto h = static_cast<std::uint32_t>(use);
-      const std::uint32_t from = wedges_[h], to = wedges_[next(h)];
+      const std::uint32_t from = wedges_[h], to = wedges_[next_in_triangle(h)];
       at_edge_.push_back(corners_[h] == a ? Side{from, to, true, h} : Side{to, from, false, h});
     }
     up_.clear();
@@ -135,8 +129,8 @@ class Parting {
     DisjointSets fans(corners_.size());
     for (std::uint32_t h = 0; h < mate_.size(); ++h)
       if (const std::uint32_t g = mate_[h]; g != kInvalid && h < g) {
-        fans.unite(h, next(g));
-        fans.unite(next(h), g);
+        fans.unite(h, next_in_triangle(g));
+        fans.unite(next_in_triangle(h), g);
       }
     result_.point_of.resize(points_);
     std::iota(result_.point_of.begin(), result_.point_of.end(), 0u);

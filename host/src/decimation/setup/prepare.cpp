@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "mesh/triangle_half_edges.h"
+
 namespace vkmesh::detail {
 namespace {
 
@@ -53,7 +55,7 @@ void lock_vertices(CollapseMesh& mesh, std::span<const std::uint32_t> corners,
     std::vector<bool> locked(mesh.apex(), false);
     for (const std::uint32_t v : locks.vertices) locked[v] = true;
     for (const std::uint32_t h : locks.edges)
-      for (const std::uint32_t c : {h, h % 3 == 2 ? h - 2 : h + 1}) locked[corners[c]] = true;
+      for (const std::uint32_t c : {h, next_in_triangle(h)}) locked[corners[c]] = true;
     for (const std::uint32_t f : locks.faces)
       for (std::size_t i = 0; i < 3; ++i) locked[corners[3 * f + i]] = true;
     for (std::uint32_t v = 0; v < mesh.apex(); ++v)
