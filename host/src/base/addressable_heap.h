@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/huge_pages.h"
+
 namespace vkmesh {
 
 /// An implicit d-ary min-heap over the ids 0 … capacity − 1, each present at most once (D. B. Johnson,
@@ -18,7 +20,11 @@ class AddressableHeap {
  public:
   AddressableHeap() = default;
   /// Ids must be < capacity.
-  explicit AddressableHeap(std::size_t capacity) : slot_(capacity, kAbsent) { entries_.reserve(capacity); }
+  explicit AddressableHeap(std::size_t capacity) : slot_(detail::large_vector<std::uint32_t>(capacity)) {
+    std::ranges::fill(slot_, kAbsent);
+    entries_.reserve(capacity);
+    detail::prefer_large_pages(entries_.data(), capacity * sizeof(Entry));
+  }
 
   [[nodiscard]] bool empty() const { return entries_.empty(); }
   [[nodiscard]] std::size_t size() const { return entries_.size(); }

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "optimize/dihedral.h"
 #include "optimize/triangle_costs.h"
@@ -50,7 +51,7 @@ SwapCosts::SwapCosts(SwapMesh& mesh, std::span<const DVec3> points, std::span<co
 
 void SwapCosts::sum_up() {
   const std::size_t faces = mesh_.face_count();
-  if (has_face_terms_) face_costs_.resize(faces);
+  if (has_face_terms_) face_costs_ = large_vector<std::int64_t>(faces);
   if (has_angles_) {
     faces_.resize(faces);
     edges_.resize(4 * faces);

@@ -15,6 +15,7 @@
 #include <vkmesh/optimize/swap_edges.h>
 
 #include "base/addressable_heap.h"
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "base/stop.h"
 #include "mesh/edit/gather.h"
@@ -76,7 +77,7 @@ ScaledPoints scale(const SwapMesh& mesh, std::span<const Vec3> positions) {
   // Swaps do not change it, so that a second run finds the costs that the first left.
   const double unit = result.diagonal / std::sqrt(static_cast<double>(mesh.face_count()));
   if (unit > 0) result.unit = std::scalbn(1.0, std::ilogb(unit));
-  result.points.resize(positions.size());
+  result.points = large_vector<DVec3>(positions.size());
   parallel_ranges(positions.size(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) result.points[v] = DVec3(positions[v]) * (1 / result.unit);
   });
@@ -134,7 +135,7 @@ class SwapQueue {
 /// Follows the corners of the input through swaps.
 class CornerSources {
  public:
-  explicit CornerSources(std::size_t faces) : source_(4 * faces) {
+  explicit CornerSources(std::size_t faces) : source_(large_vector<std::uint32_t>(4 * faces)) {
     for (std::uint32_t h = 0; h < source_.size(); ++h) source_[h] = h - h / 4;
   }
   /// Before the mesh flips h. Both of its faces have the same values at the ends of the edge.
@@ -276,7 +277,7 @@ Result<SwappedEdges> swap(const HalfEdgeMesh& given, std::span<const Vec3> posit
   result.swaps = swaps.swaps();
   result.cost_after = costs.total();
   result.blocked = swaps.blocked();
-  result.source_corner.resize(3 * mesh.face_count());
+  result.source_corner = large_vector<std::uint32_t>(3 * mesh.face_count());
   for (std::uint32_t c = 0; c < result.source_corner.size(); ++c)
     result.source_corner[c] = swaps.sources()[c + c / 3];
   result.mesh = gather(mesh).mesh;

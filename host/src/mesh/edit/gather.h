@@ -7,6 +7,7 @@
 
 #include <vkmesh/mesh/half_edge_mesh.h>
 
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "base/parallel_filter.h"
 #include "mesh/edit/edit_mesh.h"
@@ -32,7 +33,8 @@ Gathered gather(const EditMesh<Vertex>& edited) {
   std::vector<std::uint32_t> new_vertex(edited.vertex_bound(), kInvalid), new_face(edited.face_count());
   for (std::uint32_t i = 0; i < result.vertices.size(); ++i) new_vertex[result.vertices[i]] = i;
   for (std::uint32_t i = 0; i < result.faces.size(); ++i) new_face[result.faces[i]] = i;
-  std::vector<std::uint32_t> origin(3 * result.faces.size()), twin(origin.size());
+  auto origin = large_vector<std::uint32_t>(3 * result.faces.size()),
+       twin = large_vector<std::uint32_t>(origin.size());
   parallel_ranges(result.faces.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const EditFaces::Face& face = edited.face(4 * result.faces[f]);
