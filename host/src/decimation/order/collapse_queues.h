@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
-#include "decimation/cost/edge_batch.h"
 #include "base/addressable_heap.h"
+#include "decimation/cost/edge_batch.h"
 #include "decimation/order/monotone_queue.h"
 
 namespace vkmesh::detail {
