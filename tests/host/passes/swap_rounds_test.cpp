@@ -103,7 +103,9 @@ TEST_CASE("a round swaps the best edge about each of its vertices, and no two ne
         for (const std::uint32_t v : swap.vertices) best[v] = std::max(best[v], swap.gain);
       std::set<std::uint32_t> touched;
       std::size_t gone = 0;
-      for (const auto& [edge, swap] : swaps) {
+      for (const auto& entry : swaps) {
+        const Edge& edge = entry.first;
+        const Swap& swap = entry.second;
         const bool is_best =
             std::ranges::all_of(swap.vertices, [&](std::uint32_t v) { return swap.gain >= best[v] - 1e-6; });
         if (!after.contains(edge)) {
