@@ -33,6 +33,7 @@ TEST_CASE("rounds of swaps on the device equal the CPU's bit for bit") {
   for (IndexedFaceSet& shape : shapes) jitter(shape, 0.04f, 9);
   for (auto& [name, shape] : degenerate_shapes()) shapes.push_back(shape);
   shapes.emplace_back();
+  if (gpu_assisted()) shapes.erase(shapes.begin() + 2, shapes.end() - 3);  // each takes seconds there
   std::size_t swaps = 0;
   for (const IndexedFaceSet& shape : shapes) {
     const HalfEdgeMesh mesh = half_edges(shape);
@@ -52,7 +53,7 @@ TEST_CASE("rounds of swaps on the device equal the CPU's bit for bit") {
         for (const std::uint32_t n : found.swaps) swaps += n;
       }
   }
-  CHECK(swaps > 1000);
+  CHECK(swaps > (gpu_assisted() ? 100 : 1000));
 }
 
 TEST_CASE("rounds of swaps go on where an earlier recording ended") {
@@ -97,8 +98,9 @@ TEST_CASE("rounds of swaps go on where an earlier recording ended") {
 }
 
 TEST_CASE("a plane of many points is Delaunay again after few rounds on the device") {
-  if (gpu_assisted() || is_swiftshader(test_context())) return;
-  IndexedFaceSet plane = grid(120, 100);
+  // Slow devices take fewer points.
+  const std::uint32_t n = gpu_assisted() || is_swiftshader(test_context()) ? 30 : 120;
+  IndexedFaceSet plane = grid(n, n);
   jitter(plane, 0.3f, 1);
   for (Vec3& p : plane.points) p.z = 0.0f;
   const HalfEdgeMesh mesh = half_edges(plane);
