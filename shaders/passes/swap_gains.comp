@@ -22,7 +22,10 @@ float triangle_score(float a, float b, float c) {
   precise float sum = x + y;
   precise float rest = sum - 1.0;
   const float cosine = zero_below(rest, VKMESH_TINY_DIRECTION);
-  precise float sixteenfold = 4.0 * (x * y) - cosine * cosine;
+  // Not 4 x y: a product with a power of two is exact, and compilers fuse it with the difference all the same.
+  precise float twice_x = 2.0 * x;
+  precise float twice_y = 2.0 * y;
+  precise float sixteenfold = twice_x * twice_y - cosine * cosine;
   const float area = zero_below(sixteenfold, VKMESH_TINY_AREA);
   const float positive = area > 0.0 ? area : 0.0;
   precise float fourfold = 4.0 * y;

@@ -41,7 +41,7 @@ float triangle_score(SwapCriterion criterion, float a, float b, float c) {
   const float y = zero_below(middle * inverse, VKMESH_TINY_LENGTH);
   const float sum = x + y;
   const float cosine = zero_below(sum - 1.0f, VKMESH_TINY_DIRECTION);
-  const float area = zero_below(4.0f * (x * y) - cosine * cosine, VKMESH_TINY_AREA);
+  const float area = zero_below((2.0f * x) * (2.0f * y) - cosine * cosine, VKMESH_TINY_AREA);
   const float positive = area > 0.0f ? area : 0.0f;  // 16 area² / longest⁴
   if (criterion == SwapCriterion::kMinAngle) return positive * exact::reciprocal(4.0f * y);
   return exact::root(3.0f * positive) * exact::reciprocal(sum + 1.0f);
