@@ -193,10 +193,12 @@ Result<Swapped> in_rounds(Job& job, Backend& backend, const HalfEdgeMesh& half_e
   std::size_t swaps = 0;
   for (const std::uint32_t n : done.swaps) swaps += n;
   const bool ended = done.swaps.empty() || done.swaps.back() == 0;
-  job.json()["result"]["rounds"] = done.swaps.size() - (ended && !done.swaps.empty() ? 1 : 0);
+  const std::size_t count =
+      done.swaps.size() - (ended && !done.swaps.empty() ? 1 : 0);  // but the last, of none
+  job.json()["result"]["rounds"] = count;
   job.json()["result"]["swaps_of_rounds"] = done.swaps;
   job.json()["result"]["stop"] = ended ? "no gain" : "number of rounds";
-  job.row("swapped", count_of(swaps, "edge") + " in " + count_of(done.swaps.size(), "round"));
+  job.row("swapped", count_of(swaps, "edge") + " in " + count_of(count, "round"));
   job.row("stopped", ended ? "no legal swap makes it better" : "by the number of rounds that was given");
   return Swapped{std::move(done.mesh), std::move(done.source_corner), swaps};
 }

@@ -1,7 +1,6 @@
 #include "job/channel_numbers.h"
 
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <numeric>
 #include <variant>
@@ -15,6 +14,9 @@ int compare(const Channel& channel, std::size_t a, std::size_t b) {
       [&](const auto& values) {
         for (std::size_t k = 0; k < channel.components; ++k) {
           const auto x = values[a * channel.components + k], y = values[b * channel.components + k];
+          // What is no number comes first: an order must place it.
+          const bool x_is_none = x != x, y_is_none = y != y;
+          if (x_is_none != y_is_none) return x_is_none ? -1 : 1;
           if (x < y) return -1;
           if (y < x) return 1;
         }

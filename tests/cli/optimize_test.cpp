@@ -89,6 +89,36 @@ TEST_CASE("optimize leaves seams and borders of materials unless told otherwise"
   CHECK(free.json()["result"]["held"]["material_border"] == 0);
 }
 
+TEST_CASE("optimize takes texture coordinates that are no numbers") {
+  const Scratch scratch;
+  const int n = 12;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex " + std::to_string((n + 1) * (n + 1)) +
+      "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(2 * n * n) +
+      "\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n";
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) text += std::to_string(j + 0.8 * i) + " " + std::to_string(i) + " 0\n";
+  int number = 0;
+  const auto face = [&](int a, int b, int c) {
+    text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + " 6";
+    for (int k = 0; k < 6; ++k)
+      text += number++ % 3 == 0 ? " nan" : " " + std::to_string(number * 7919 % 101);
+    text += "\n";
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j, b = a + 1, d = a + n + 1, c = d + 1;
+      face(a, b, c);
+      face(a, c, d);
+    }
+  const std::string in = scratch.file("nan.ply", text);
+  const Outcome run = vkmesh_run({"optimize", in, scratch.path("out.ply"), "--json"});
+  REQUIRE(run.code == 0);
+  CHECK(run.json()["result"]["swaps"] == 0);  // every edge is a seam
+  CHECK(vkmesh_run({"optimize", in, scratch.path("free.ply"), "--no-seams", "--json"})
+            .json()["result"]["swaps"] > 30);
+}
+
 TEST_CASE("optimize obeys its bounds, and refuses what does not go together") {
   const Scratch scratch;
   const std::string in = scratch.file("sheet.obj", sheared_obj(8, false)), out = scratch.path("out.ply");

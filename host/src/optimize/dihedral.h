@@ -12,9 +12,9 @@
 
 namespace vkmesh::detail {
 
-/// The angle in [0, π/2] of the vector (x, y) for x, y ≥ 0, within 2 ULP; 0 for (0, 0). Of + − × ÷ alone, so
-/// that it is the same on every machine: arctan t = arctan c + arctan((t − c) / (1 + t c)) for the nearest c
-/// = k/16, and a series.
+/// The angle in [0, π/2] of the vector (x, y) for x, y ≥ 0, within 2 ULP; 0 for (0, 0). It takes + − × ÷
+/// alone, so that it is the same on every machine: arctan t = arctan c + arctan((t − c) / (1 + t c)) for the
+/// nearest c = k/16, and a series.
 [[nodiscard]] inline double angle_in_first_quadrant(double y, double x) {
   constexpr std::array<double, 17> kArctan = {0x0.0p+0,
                                               0x1.ff55bb72cfdeap-5,
@@ -57,8 +57,7 @@ namespace vkmesh::detail {
 }
 
 /// The angle between the normals of two faces, unit or zero, in [0, π]; π where one is zero, so that a face
-/// without area never looks flat. W. Kahan's 2 atan2(|a − b|, |a + b|): the lengths in double, their angle
-/// exactly.
+/// without area never looks flat. W. Kahan's 2 atan2(|a − b|, |a + b|).
 [[nodiscard]] inline double angle_between_normals(const DVec3& a, const DVec3& b) {
   if (a == DVec3(0.0) || b == DVec3(0.0)) return std::numbers::pi;
   const DVec3 apart = a - b, along = a + b;

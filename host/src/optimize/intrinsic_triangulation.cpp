@@ -9,6 +9,7 @@
 #include <vkmesh/optimize/intrinsic_triangulation.h>
 
 #include "mesh/triangle_half_edges.h"
+#include "optimize/dihedral.h"
 #include "optimize/triangle_costs.h"
 
 namespace vkmesh {
@@ -28,7 +29,7 @@ struct Corner {
   Corner(double x, double y, double opposite)
       : area(2 * detail::SquaredSides(squared(x), squared(y), squared(opposite)).area()),
         product(0.5 * (squared(x) + squared(y) - squared(opposite))) {}
-  [[nodiscard]] double angle() const { return std::atan2(area, product); }
+  [[nodiscard]] double angle() const { return detail::angle_of(area, product); }
   [[nodiscard]] double cotangent() const { return product / area; }
 };
 
@@ -51,7 +52,6 @@ Result<IntrinsicTriangulation> IntrinsicTriangulation::create(const HalfEdgeMesh
     result.lengths_.resize(half_edges);
     double sum = 0;
     for (std::uint32_t h = 0; h < half_edges; ++h) {
-      // Of both half-edges alike, whichever comes first.
       const DVec3 p(positions[result.origins_[h]]), q(positions[result.origins_[next_in_triangle(h)]]);
       result.lengths_[h] = glm::length(q - p);
       sum += result.lengths_[h];

@@ -25,8 +25,8 @@ class SwapCosts {
   SwapCosts(SwapMesh& mesh, std::span<const DVec3> points, std::span<const WeightedSwapCost> costs,
             std::span<const DVec3> normals);
 
-  /// By how much the swap of an inner edge lowers the cost. Of kMinAngle or kAspectRatio alone: how much
-  /// better the worse of its triangles gets. O(1).
+  /// By how much the swap of an inner edge lowers the cost; with kMinAngle or kAspectRatio alone how
+  /// much better the worse of its triangles gets. O(1).
   [[nodiscard]] std::int64_t gain(std::uint32_t h) const;
   /// Calls f(half-edge, gain) for the inner edges of these faces whose swap gains, each by the smaller of its
   /// half-edges, in ascending order. O(faces).
@@ -75,7 +75,7 @@ class SwapCosts {
   [[nodiscard]] double total() const;
 
  private:
-  /// A third of each corner's angle, the area, and the normal of a face, for the terms of edges and vertices.
+  /// The normal, the area and the angles of a face, for the terms of edges and vertices.
   struct FaceShape {
     DVec3 normal{0.0};  // zero where there is no area
     std::int64_t area = 0;

@@ -107,7 +107,7 @@ class Definition {
     return sum;
   }
 
-  /// Of max-min angle the least angle; of the aspect ratio the least quality; of Delaunay the cotangents.
+  /// The term of a triangle: ¾ − sin² of the least angle, 1 − quality, or the sum of the cotangents.
   [[nodiscard]] double of_triangle(const Triangle& t, SwapCost cost) const {
     double least = kPi, cotangents = 0, sides = 0;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -11,8 +11,8 @@
 
 namespace vkmesh {
 
-/// Of the least angle of each triangle, in radians; 0 where there are none. A triangle without area has one
-/// of 0.
+/// Measures of the least angle of each triangle, in radians; 0 where there are none. A triangle without area
+/// has one of 0.
 struct TriangleAngles {
   double least = 0, mean = 0;
   std::size_t below_5_degrees = 0, below_30_degrees = 0;  ///< Triangles.
