@@ -140,8 +140,6 @@ class EdgeCollapses {
   void run(std::uint32_t last) {
     share_->last = last;
     while (!share_->state.reached() && step()) share_->state.ask();
-    put_back();
-    forget_touched();
   }
 
   /// Takes over what another has forwarded.
@@ -153,27 +151,16 @@ class EdgeCollapses {
     other.to_revive.clear();
   }
 
-  /// Takes the next of the queue and does what is legal and due. False when nothing is left.
+  /// Takes a batch from the queue and does what is legal and due. False when nothing is left.
   bool step() {
     if (!share_->partition.is_bounded()) share_->watch(share_->state);
-    std::rotate(pending_.begin(), pending_.begin() + 1, pending_.end());
-    auto& [now, next, later, last] = pending_;
-    if (Queue::kBatch > 1 && (share_->partition.is_bounded() || share_->state.faces > kInCache)) {
-      take(*last);
-      evaluate(*next);
-    } else {
-      evaluate(*next);
-      if (now->count == 0 && next->count == 0 && later->count == 0) {
-        take(*now);
-        now->fetch_faces(mesh_, Pending::kAll);
-        now->fetch_ends(mesh_, Pending::kAll);
-        evaluate(*now);
-      }
-      now->walk(mesh_, Pending::kAll);
-    }
-    const bool any = now->count + next->count + later->count + last->count > 0;
-    serve(*now, *next, *later, *last);
-    return any;
+    pending_->count = share_->queue.take(pending_->ids, share_->last);
+    if (pending_->count == 0) return false;
+    pending_->fetch(mesh_);
+    evaluate_pending();
+    pending_->walk(mesh_);
+    serve();
+    return true;
   }
 
   /// Counts what blocks each edge that is left.
@@ -267,34 +254,27 @@ class EdgeCollapses {
 
   using Pending = PendingEdges<Queue::kBatch>;
   using Due = DueEdge;
-  /// So few faces need no looking ahead, which makes the order a little less strict.
-  static constexpr std::size_t kInCache = 1 << 14;
-
-  void take(Pending& b) { b.count = share_->queue.take(b.ids, share_->last); }
 
   /// Tells those that are due from those that go back at what they cost now.
-  void evaluate(Pending& b) {
-    if (b.count == 0) return;
+  void evaluate_pending() {
+    Pending& b = *pending_;
     // Branchless: the conditions are unpredictable.
     std::size_t live = 0;
     std::array<EdgeBatch::Ends, Queue::kBatch> ends;
     const std::uint32_t interface = share_->partition.is_bounded() ? tag_mask(kAtInterface) : 0;
     const CollapseMesh::Face* const faces = mesh_.faces();
-    for (const std::uint32_t h : std::span(b.ids).first(b.queued)) {
+    for (const std::uint32_t h : std::span(b.ids).first(b.count)) {
       const CollapseMesh::Face& face = faces[h >> 2];
-      const std::uint32_t tags = face.tags >> (h & 3u), queued = tags & 1u;
-      if ((tags & interface) != 0) [[unlikely]] {
-        if (queued != 0) share_->forwarded.push_back(h);
+      if ((face.tags >> (h & 3u) & interface) != 0) [[unlikely]] {
+        share_->forwarded.push_back(h);
         continue;
       }
       b.ids[live] = h;
-      ends[live] = ends_of(face, h);
-      live += queued;
+      ends[live++] = ends_of(face, h);
     }
     const auto ids = std::span(b.ids).first(live);
     evaluate(ids, std::span(ends).first(live), batch_);
     const float* const ranks = ranks_of(ids);
-    b.evaluated = true;
     b.due_count = 0;
     std::array<std::uint8_t, Queue::kBatch> is_due, due, others;
     for (std::size_t i = 0; i < ids.size(); ++i) is_due[i] = share_->queue.is_due(ids[i], ranks[i]) ? 1 : 0;
@@ -306,7 +286,6 @@ class EdgeCollapses {
     }
     for (std::size_t i = 0; i < b.due_count; ++i) b.due[i] = due_of(due[i], ids[due[i]]);
     for (const std::uint8_t i : std::span(others).first(other_count)) share_->queue.insert(ids[i], ranks[i]);
-    b.start_walks(mesh_);
   }
 
   [[nodiscard]] bool is_mine(std::uint32_t h) const {
@@ -319,48 +298,14 @@ class EdgeCollapses {
       share_->forwarded.push_back(h);
   }
 
-  /// Puts back what was taken and not tried.
-  void put_back() {
-    for (auto& b : pending_) {
-      for (std::size_t i = b->tried; i < b->due_count; ++i) put_back(b->due[i].half_edge);
-      // Those that were evaluated are due, or in the queue again.
-      if (!b->evaluated) b->for_each_waiting([&](std::uint32_t h) { put_back(h); });
-      b->reset();
-    }
-  }
-  void put_back(std::uint32_t h) {
-    if (mesh_.has_tag(h, kQueued)) enqueue_now(h);
-  }
-  void forget_touched() {
-    for (auto* touched : {&before_, &touched_}) {
-      for (const std::uint32_t v : *touched) vertices_[v].source &= ~VertexRecord::kTouched;
-      touched->clear();
-    }
-  }
-
-  /// About a fifth of what is taken is due, and a ring has some six vertices. Constant trip counts are
-  /// predictable.
-  static constexpr std::size_t kFetches = 12, kWalkSteps = 32;
-
-  /// Tries the edges of the first batch, and in between brings on the others a little.
-  void serve(Pending& now, Pending& next, Pending& later, Pending& last) {
-    for (; now.tried < now.due_count && !share_->state.reached(); ++now.tried) {
-      attempt(now, now.tried);
-      if (now.tried % 2 == 0) continue;
-      next.walk(mesh_, kWalkSteps);
-      later.fetch_ends(mesh_, kFetches);
-      last.fetch_faces(mesh_, kFetches);
-    }
-    for (const std::uint32_t h : std::span(again_).first(again_count_)) enqueue_now(h);
-    again_count_ = 0;
-    next.walk(mesh_, Pending::kAll);
-    later.fetch_ends(mesh_, Pending::kAll);
-    last.fetch_faces(mesh_, Pending::kAll);
-    // What the last batch touched is known now to the rings of this one.
-    for (const std::uint32_t v : before_) vertices_[v].source &= ~VertexRecord::kTouched;
-    before_.clear();
-    std::swap(before_, touched_);
-    if (now.tried == now.due_count) now.reset();
+  /// Tries the edges that are due, and puts those back that a limit keeps from their turn.
+  void serve() {
+    std::size_t i = 0;
+    for (; i < pending_->due_count && !share_->state.reached(); ++i) attempt(i);
+    for (; i < pending_->due_count; ++i)
+      if (const std::uint32_t h = pending_->due[i].half_edge; mesh_.has_tag(h, kQueued)) enqueue_now(h);
+    for (const std::uint32_t v : touched_) vertices_[v].source &= ~VertexRecord::kTouched;
+    touched_.clear();
   }
 
   /// The edge of a lane of the batch.
@@ -368,8 +313,8 @@ class EdgeCollapses {
     return {half_edge, batch_.cost[i], batch_.end[i], {batch_.x[0][i], batch_.x[1][i], batch_.x[2][i]}};
   }
 
-  void attempt(const Pending& b, std::size_t i) {
-    const Due& due = b.due[i];
+  void attempt(std::size_t i) {
+    const Due& due = pending_->due[i];
     const std::uint32_t h = due.half_edge;
     if (!mesh_.has_tag(h, kQueued)) return;
     const std::uint32_t p = mesh_.origin(h), q = mesh_.target(h);
@@ -377,11 +322,11 @@ class EdgeCollapses {
       share_->queue.insert_now(h);
       return;
     }
-    const Reason reason = judge_edge(b, i, due, p, q);
+    const Reason reason = judge_edge(i, due, p, q);
     if (reason == Reason::kNone) {
       const std::optional<float> later = cost_of_drift(due, p, q);
       if (!later) return collapse(due, p, q);
-      if (const std::optional<Due> end = at_end(b, i, p, q)) return collapse(*end, p, q);
+      if (const std::optional<Due> end = at_end(i, p, q)) return collapse(*end, p, q);
       share_->queue.insert(h, *later);
     } else {
       ++share_->state.outcome.rejected[reason];
@@ -410,15 +355,15 @@ class EdgeCollapses {
   }
   /// The same collapse into an end of the edge, where that costs no more and need not wait: the corner of a
   /// thin sheet, which its short side holds so weakly that the best place is found only nearly.
-  [[nodiscard]] std::optional<Due> at_end(const Pending& b, std::size_t i, std::uint32_t p, std::uint32_t q) {
-    if (kAttributes || Placement::kAtEnds || b.due[i].end != EdgeBatch::kFree) return std::nullopt;
+  [[nodiscard]] std::optional<Due> at_end(std::size_t i, std::uint32_t p, std::uint32_t q) {
+    const Due& due = pending_->due[i];
+    if (kAttributes || Placement::kAtEnds || due.end != EdgeBatch::kFree) return std::nullopt;
     const Vector3 d = minus(vertices_[q].position, vertices_[p].position);
     const std::array<Due, 2> ends = {
-        Due{b.due[i].half_edge, cost_at(p, q, {0.0f, 0.0f, 0.0f}, d), EdgeBatch::kAtP, {0.0f, 0.0f, 0.0f}},
-        Due{b.due[i].half_edge, cost_at(p, q, d, d), EdgeBatch::kAtQ, d}};
+        Due{due.half_edge, cost_at(p, q, {0.0f, 0.0f, 0.0f}, d), EdgeBatch::kAtP, {0.0f, 0.0f, 0.0f}},
+        Due{due.half_edge, cost_at(p, q, d, d), EdgeBatch::kAtQ, d}};
     for (const Due& end : ends)
-      if (end.cost <= b.due[i].cost && judge_edge(b, i, end, p, q) == Reason::kNone &&
-          !cost_of_drift(end, p, q))
+      if (end.cost <= due.cost && judge_edge(i, end, p, q) == Reason::kNone && !cost_of_drift(end, p, q))
         return end;
     return std::nullopt;
   }
@@ -429,17 +374,15 @@ class EdgeCollapses {
 
   [[nodiscard]] Reason judge_alone(std::uint32_t h) {
     evaluate(std::span(&h, 1));
-    Pending& alone = *pending_[0];
-    alone.due[0] = due_of(0, h);
-    alone.walked[0].size = Pending::Ring::kTooLong;
-    return judge_edge(alone, 0, alone.due[0], mesh_.origin(h), mesh_.target(h));
+    pending_->due[0] = due_of(0, h);
+    pending_->walked[0].size = Pending::Ring::kTooLong;
+    return judge_edge(0, pending_->due[0], mesh_.origin(h), mesh_.target(h));
   }
 
-  /// The collapse of edge i of a batch, as judge() takes it. It looks around when it comes to
+  /// The collapse of edge i of those that are due, as judge() takes it. It looks around when it comes to
   /// the link condition.
   struct Change : Operator::Change {
     EdgeCollapses& self;
-    const Pending& batch;
     std::size_t i;
 
     [[nodiscard]] const DecimationState& state() const { return self.share_->state; }
@@ -453,7 +396,7 @@ class EdgeCollapses {
       return self.operator_.exceeds_error(state(), this->due, this->p, this->q);
     }
     [[nodiscard]] bool meets_link_condition() const {
-      self.look_around(batch, i);
+      self.look_around(i);
       return Operator::Change::meets_link_condition();
     }
     [[nodiscard]] bool meets_criteria() const {
@@ -461,9 +404,8 @@ class EdgeCollapses {
              self.meets_criteria(this->due, this->p, this->q);
     }
   };
-  [[nodiscard]] Reason judge_edge(const Pending& b, std::size_t i, const Due& due, std::uint32_t p,
-                                  std::uint32_t q) {
-    return judge(Change{{{}, operator_, due, p, q, share_->state.limits.cos_deviation}, *this, b, i});
+  [[nodiscard]] Reason judge_edge(std::size_t i, const Due& due, std::uint32_t p, std::uint32_t q) {
+    return judge(Change{{{}, operator_, due, p, q, share_->state.limits.cos_deviation}, *this, i});
   }
 
   [[nodiscard]] bool meets_criteria(const Due& due, std::uint32_t p, std::uint32_t q) {
@@ -478,13 +420,13 @@ class EdgeCollapses {
 
   /// Looks around an edge with the rings that were walked, or with new ones if a collapse of this batch was
   /// near.
-  void look_around(const Pending& b, std::size_t i) {
-    const auto &at_p = b.walked[2 * i], &at_q = b.walked[2 * i + 1];
+  void look_around(std::size_t i) {
+    const auto &at_p = pending_->walked[2 * i], &at_q = pending_->walked[2 * i + 1];
     if (at_p.is_whole() && at_q.is_whole() &&
         (operator_.look_around(at_p.part(0, at_p.size), at_q.part(0, at_q.size)).flags() &
          VertexRecord::kTouched) == 0)
       return;
-    const std::uint32_t h = b.due[i].half_edge;
+    const std::uint32_t h = pending_->due[i].half_edge;
     ring_p_.gather(mesh_, h);
     ring_q_.gather(mesh_, mesh_.twin(h));
     operator_.look_around(ring_p_.ring(), ring_q_.ring());
@@ -524,8 +466,7 @@ class EdgeCollapses {
     const WasQueued was = join_tags(mesh_, g, t);
     if constexpr (Queue::kExact)
       if (was == WasQueued::kBoth) share_->queue.erase(t);
-    again_[again_count_] = g;
-    again_count_ += was == WasQueued::kNone ? 1 : 0;
+    if (was == WasQueued::kNone) enqueue_now(g);
   }
 
   void put(std::uint32_t h, float cost) {
@@ -685,13 +626,8 @@ class EdgeCollapses {
   EdgeBatch batch_;
   EdgeBatch::Lanes ranks_;
   LocalChange change_;
-  std::array<std::unique_ptr<Pending>, 4> pending_ = {
-      std::make_unique<Pending>(), std::make_unique<Pending>(), std::make_unique<Pending>(),
-      std::make_unique<Pending>()};
-  // Edges to be queued when the batch is done.
-  std::array<std::uint32_t, 2 * Queue::kBatch + 2> again_;
-  std::size_t again_count_ = 0;
-  std::vector<std::uint32_t> before_, touched_;
+  std::unique_ptr<Pending> pending_ = std::make_unique<Pending>();
+  std::vector<std::uint32_t> touched_;
   LongRing ring_p_, ring_q_;
   std::vector<Moved> moved_;
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -53,48 +52,31 @@ class RingWalks {
   void start(std::uint32_t max_steps) {
     walks_.clear();
     max_steps_ = max_steps;
-    next_ = kept_ = 0;
-    steps_ = 0;
   }
   /// Adds a walk around the origin of `from`, from the half-edge after it on and up to `last`.
   void add(std::uint32_t from, std::uint32_t last, Target& target) {
     walks_.push_back({from, last, &target});
   }
 
-  /// Takes up to so many steps, all walks together. Calls visit(target, number of the step, the step, whether
-  /// it is the last) for each, which returns whether to go on, and give_up(target) for walks of too many
-  /// steps.
+  /// Takes all steps, those of the same number together. Calls visit(target, number of the step, the step,
+  /// whether it is the last) for each, which returns whether to go on, and give_up(target) for walks of too
+  /// many steps.
   template <class Visit, class GiveUp>
-  void walk(const EditFaces& mesh, std::size_t steps, Visit&& visit, GiveUp&& give_up) {
+  void walk(const EditFaces& mesh, Visit&& visit, GiveUp&& give_up) {
     const EditFaces::Face* const faces = mesh.faces();
-    while (steps > 0 && !walks_.empty()) {
-      const std::size_t end = steps < walks_.size() - next_ ? next_ + steps : walks_.size();
-      steps -= end - next_;
-      const Walk* walk = &walks_[next_];
-      const Walk* const stop = walk + (end - next_);
-      Walk* kept = &walks_[kept_];
-      const std::uint32_t number = steps_;
-      for (; walk != stop; ++walk) {
-        const auto [at, last, target] = *walk;
+    for (std::uint32_t number = 0; !walks_.empty() && number < max_steps_; ++number) {
+      std::size_t kept = 0;
+      for (const auto [at, last, target] : walks_) {
         const RingStep step = RingStep::from(faces, at);
         prefetch(&faces[step.edge >> 2]);
         const bool goes_on = visit(*target, number, step, step.edge == last);
-        *kept = {step.edge, last, target};
+        walks_[kept] = {step.edge, last, target};
         kept += static_cast<std::size_t>(step.edge != last) & static_cast<std::size_t>(goes_on);
       }
-      kept_ = static_cast<std::size_t>(kept - walks_.data());
-      next_ = end;
-      if (end < walks_.size()) return;
-      walks_.resize(kept_);
-      next_ = kept_ = 0;
-      if (++steps_ < max_steps_) continue;
-      for (const Walk& too_long : walks_) give_up(*too_long.target);
-      walks_.clear();
+      walks_.resize(kept);
     }
-  }
-  template <class Visit, class GiveUp>
-  void walk(const EditFaces& mesh, Visit&& visit, GiveUp&& give_up) {
-    walk(mesh, std::numeric_limits<std::size_t>::max(), visit, give_up);
+    for (const Walk& too_long : walks_) give_up(*too_long.target);
+    walks_.clear();
   }
 
  private:
@@ -103,9 +85,7 @@ class RingWalks {
     Target* target;
   };
   std::vector<Walk> walks_;
-  // Walks before `next_` have taken this step, and those before `kept_` take another.
-  std::size_t next_ = 0, kept_ = 0;
-  std::uint32_t steps_ = 0, max_steps_ = 0;
+  std::uint32_t max_steps_ = 0;
 };
 
 /// A ring of any size. Whole blocks of kBlock vertices can be read.
