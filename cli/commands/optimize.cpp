@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <vkmesh/analysis/triangle_angles.h>
 #include <vkmesh/mesh/triangulate.h>
 #include <vkmesh/optimize/swap_edges.h>
 #include <vkmesh/passes/dihedral_angles.h>
@@ -18,6 +17,7 @@
 
 #include "commands.h"
 #include "job/channel_numbers.h"
+#include "job/triangle_angles.h"
 #include "passes/backend.h"
 
 namespace vkmesh::cli {
@@ -96,20 +96,6 @@ Borders borders_of(const IndexedFaceSet& mesh, const OptimizeOptions& options) {
       regions.push_back(channel);
   if (options.material_borders && !regions.empty()) borders.faces = numbers_of_values(regions);
   return borders;
-}
-
-Json json_of(const TriangleAngles& angles) {
-  return {{"least", angles.least * kDegrees},
-          {"mean_least", angles.mean * kDegrees},
-          {"below_5", angles.below_5_degrees},
-          {"below_30", angles.below_30_degrees}};
-}
-
-std::string text_of(const TriangleAngles& angles, std::size_t faces) {
-  const double share =
-      faces == 0 ? 0 : 100.0 * static_cast<double>(angles.below_30_degrees) / static_cast<double>(faces);
-  return "least " + brief(angles.least * kDegrees) + ", mean of the least " + brief(angles.mean * kDegrees) +
-         " degrees; " + brief(share) + " % of the triangles have one below 30";
 }
 
 /// What either way of swapping comes to.

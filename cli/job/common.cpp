@@ -475,6 +475,13 @@ Result<std::pair<std::string, double>> named_weight(const std::string& option, c
   return std::pair(text.substr(0, equals), weight);
 }
 
+std::optional<Length> length_of(const std::optional<double>& absolute,
+                                const std::optional<double>& relative) {
+  if (absolute) return Length::absolute(*absolute);
+  if (relative) return Length::relative(*relative);
+  return std::nullopt;
+}
+
 CLI::Validator number_between(double low, double high) {
   const auto check = [low, high](std::string& text) {
     double value = 0;

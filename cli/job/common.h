@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,7 @@
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/math/length.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/repair/consolidate.h>
 
@@ -197,6 +199,10 @@ template <class Enum>
   };
   return CLI::Validator(transform, "");
 }
+
+/// What an option in units of the file says, or the one beside it in shares of the diagonal.
+[[nodiscard]] std::optional<Length> length_of(const std::optional<double>& absolute,
+                                              const std::optional<double>& relative);
 
 /// For options: a number in [low, high], which "nan" is not; a number of decimal digits, at most `high`.
 [[nodiscard]] CLI::Validator number_between(double low, double high);

@@ -19,6 +19,7 @@
 #include "commands.h"
 #include "commands/simplify/simplify_attributes.h"
 #include "commands/simplify/simplify_criteria.h"
+#include "job/channels.h"
 #include "passes/backend.h"
 
 namespace vkmesh::cli {
@@ -100,13 +101,6 @@ std::string why(DecimateStop stop, const SimplifyOptions& options, const Simplif
   return {};
 }
 
-std::optional<Length> length_of(const std::optional<double>& absolute,
-                                const std::optional<double>& relative) {
-  if (absolute) return Length::absolute(*absolute);
-  if (relative) return Length::relative(*relative);
-  return std::nullopt;
-}
-
 DecimateOptions decimation_of(const SimplifyOptions& options) {
   DecimateOptions decimation;
   if (options.operation == "half-edge-collapse") decimation.operation = DecimateOperation::kHalfEdgeCollapse;
@@ -118,29 +112,6 @@ DecimateOptions decimation_of(const SimplifyOptions& options) {
   if (options.crease_angle) decimation.curves.crease_angle = *options.crease_angle * kRadians;
   decimation.prune_size = length_of(options.prune_size, options.prune_relative_size);
   return decimation;
-}
-
-/// Locks the points and faces whose value in the channel of that name is not 0.
-Result<void> lock_marked(const IndexedFaceSet& mesh, const std::string& name, DecimateOptions& decimation) {
-  const auto marked = [](const Channel& channel) {
-    std::vector<std::uint32_t> found;
-    std::visit(
-        [&](const auto& values) {
-          for (std::size_t i = 0; i < values.size(); ++i)
-            if (values[i] != 0 && (found.empty() || found.back() != i / channel.components))
-              found.push_back(static_cast<std::uint32_t>(i / channel.components));
-        },
-        channel.values);
-    return found;
-  };
-  const Channel *of_points = find_channel(mesh.point_channels, name),
-                *of_faces = find_channel(mesh.face_channels, name);
-  if (of_points == nullptr && of_faces == nullptr)
-    return fail(ErrorCode::kUsage,
-                "--lock " + name + ": neither points nor faces have an attribute of this name");
-  if (of_points != nullptr) decimation.locked.vertices = marked(*of_points);
-  if (of_faces != nullptr) decimation.locked.faces = marked(*of_faces);
-  return {};
 }
 
 /// Points that no face uses, which a decimation does not know.
@@ -236,7 +207,11 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   decimation.bounds = criteria.bounds();
   decimation.bounds.error = length_of(options.error, options.relative_error);
   decimation.bounds.normal_deviation = options.max_normal_deviation * kRadians;
-  if (!options.attributes.lock.empty()) VKMESH_CHECK(lock_marked(mesh, options.attributes.lock, decimation));
+  if (!options.attributes.lock.empty()) {
+    VKMESH_TRY(Marked marked, find_marked(mesh, options.attributes.lock));
+    decimation.locked.vertices = std::move(marked.vertices);
+    decimation.locked.faces = std::move(marked.faces);
+  }
   if (const auto ends = ends_on_shared_curves(half_edges, mesh.points); !ends.empty()) {
     job.note(count_of(ends.size(), "point") +
              " on curves where three sheets or more meet stay in place, or gaps would open between them");

@@ -10,15 +10,10 @@
 #include <variant>
 
 #include "job/channel_numbers.h"
+#include "job/channels.h"
 
 namespace vkmesh::cli {
 namespace {
-
-/// Whether values between two of the channel's mean something: not so where they number things.
-bool can_be_mixed(const Channel& channel) {
-  return channel.labels.empty() && !std::holds_alternative<std::vector<std::int32_t>>(channel.values) &&
-         !std::holds_alternative<std::vector<std::uint32_t>>(channel.values);
-}
 
 /// Whether what points have takes part unless something else was said. Other small integers may number
 /// things.
@@ -67,28 +62,6 @@ Result<Weights> weights_by_name(const std::vector<std::string>& given) {
     weights[named.first] = named.second;
   }
   return weights;
-}
-
-/// How many of the edges between two faces have different values of the channel on their sides.
-struct BorderCount {
-  std::size_t borders = 0, edges = 0;
-};
-BorderCount count_borders(const HalfEdgeMesh& mesh, const Channel& channel) {
-  const std::size_t n = channel.components;
-  BorderCount count;
-  std::visit(
-      [&](const auto& values) {
-        const std::span all(values);
-        for (std::uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
-          const std::uint32_t twin = mesh.twin(HalfEdgeId(h)).index;
-          if (twin == kInvalid || twin < h) continue;
-          ++count.edges;
-          count.borders +=
-              std::ranges::equal(all.subspan(h / 3 * n, n), all.subspan(twin / 3 * n, n)) ? 0 : 1;
-        }
-      },
-      channel.values);
-  return count;
 }
 
 /// The first of the names that no channel of the mesh has.
@@ -193,7 +166,7 @@ void SimplifyAttributes::find_borders(Job& job, const HalfEdgeMesh& half_edges) 
     if (channel.name == "normal") continue;
     const BorderCount count = count_borders(half_edges, channel);
     if (count.borders == 0) continue;
-    if (can_be_mixed(channel) && 2 * count.borders >= count.edges) {
+    if (!has_regions(count, channel)) {
       job.note("the attribute " + channel.name +
                " of faces changes from face to face: its borders are not kept");
       continue;
