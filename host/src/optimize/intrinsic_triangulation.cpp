@@ -8,8 +8,8 @@
 #include <vkmesh/math/arithmetic.h>
 #include <vkmesh/optimize/intrinsic_triangulation.h>
 
+#include "math/angle.h"
 #include "mesh/triangle_half_edges.h"
-#include "optimize/dihedral.h"
 #include "optimize/triangle_costs.h"
 
 namespace vkmesh {

@@ -9,7 +9,7 @@
 
 #include "base/huge_pages.h"
 #include "base/parallel.h"
-#include "optimize/dihedral.h"
+#include "math/angle.h"
 #include "optimize/triangle_costs.h"
 
 namespace vkmesh::detail {

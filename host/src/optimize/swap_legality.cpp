@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/parallel.h"
-#include "optimize/dihedral.h"
+#include "math/angle.h"
 
 namespace vkmesh::detail {
 namespace {

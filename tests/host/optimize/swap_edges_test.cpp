@@ -19,7 +19,7 @@
 
 #include <vkmesh/optimize/swap_edges.h>
 
-#include "optimize/dihedral.h"
+#include "math/angle.h"
 #include "optimize/triangle_costs.h"
 #include "support/shapes.h"
 
