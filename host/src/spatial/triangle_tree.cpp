@@ -61,6 +61,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const std::ui
   builder.split(0, static_cast<std::uint32_t>(count));
   triangles_.reserve(count);
   for (const std::uint32_t f : builder.order) triangles_.push_back(builder.triangle(f));
+  sources_ = std::move(builder.order);
 }
 
 double TriangleTree::nearest(const DVec3& p, std::uint32_t& hint) const {

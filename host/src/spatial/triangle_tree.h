@@ -20,6 +20,8 @@ class TriangleTree {
   TriangleTree(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 
   [[nodiscard]] const Triangle& at(std::uint32_t i) const { return triangles_[i]; }
+  /// For each triangle its number in `corners`.
+  [[nodiscard]] std::span<const std::uint32_t> sources() const { return sources_; }
 
   /// The squared distance of p from its nearest triangle. `hint` is any triangle, best one near p; becomes
   /// the nearest.
@@ -36,6 +38,7 @@ class TriangleTree {
 
   std::vector<Node> nodes_;
   std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> sources_;
 };
 
 }  // namespace vkmesh::detail

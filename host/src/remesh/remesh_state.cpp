@@ -1,0 +1,23 @@
+#include "remesh/remesh_state.h"
+
+namespace vkmesh::detail {
+
+Foot RemeshState::original_at(std::uint32_t h) const {
+  const std::uint32_t v = mesh.origin(h);
+  const RemeshVertex& vertex = mesh.vertices[v];
+  if (vertex.is_free()) return surface.nearest_in(vertex.place, vertex.position);
+  // Clockwise to the curve that bounds the sector of h.
+  std::uint32_t g = h;
+  do {
+    if (is_curve(g)) {
+      const std::uint32_t curve = curve_of(g);
+      const double here = along(curve, v);
+      return curves.beside(curve, here, along(curve, mesh.target(g)) > here);
+    }
+    g = EditFaces::next(mesh.twin(g));
+  } while (g != h);
+  const std::uint32_t f = surface.mesh().leadings()[vertex.place] / 3;
+  return surface.nearest_in(f, vertex.position);
+}
+
+}  // namespace vkmesh::detail
