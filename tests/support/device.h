@@ -3,7 +3,11 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
+#include <catch2/catch.hpp>
+
+#include <vkmesh/base/result.h>
 #include <vkmesh/engine/core/context.h>
 
 namespace vkmesh::test {
@@ -23,5 +27,15 @@ ContextOptions device_options();
 
 /// One context for the whole run. Fails the test where there is no such device.
 Context& test_context();
+
+/// The value of a result; an error fails the test.
+template <class T>
+T require(Result<T> result) {
+  if (!result) FAIL(result.error().describe());
+  return *std::move(result);
+}
+inline void require_done(const Result<void>& result) {
+  if (!result) FAIL(result.error().describe());
+}
 
 }  // namespace vkmesh::test

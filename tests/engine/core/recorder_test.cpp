@@ -31,16 +31,6 @@ namespace vkmesh::test {
 namespace {
 
 template <class T>
-T require(Result<T> result) {
-  if (!result) FAIL(result.error().describe());
-  return *std::move(result);
-}
-
-void require_done(const Result<void>& result) {
-  if (!result) FAIL(result.error().describe());
-}
-
-template <class T>
 Buffer buffer_of(Context& context, const std::vector<T>& values) {
   Buffer buffer = require(Buffer::create(context, values.size() * sizeof(T)));
   require_done(buffer.upload(std::as_bytes(std::span(values))));

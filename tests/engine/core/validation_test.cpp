@@ -19,16 +19,6 @@ namespace {
 
 using Catch::Contains;
 
-template <class T>
-T require(Result<T> result) {
-  if (!result) FAIL(result.error().describe());
-  return *std::move(result);
-}
-
-void require_done(const Result<void>& result) {
-  if (!result) FAIL(result.error().describe());
-}
-
 /// One whose messages do not count for the run.
 std::unique_ptr<Context> context_with(bool gpu_assisted) {
   ContextOptions options = device_options();

@@ -35,6 +35,8 @@ using namespace vkmesh;
 
 namespace {
 
+using test::require, test::require_done;
+
 // The number of places where two arrays differ in any bit, plus the difference in their lengths.
 std::size_t differences(std::span<const float> a, std::span<const float> b) {
   std::size_t count = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
@@ -46,16 +48,6 @@ std::size_t differences(std::span<const float> a, std::span<const float> b) {
 std::size_t differences(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return differences(std::span(a.empty() ? nullptr : &a[0].x, 3 * a.size()),
                      std::span(b.empty() ? nullptr : &b[0].x, 3 * b.size()));
-}
-
-void require_done(const Result<void>& result) {
-  if (!result) FAIL(result.error().describe());
-}
-
-template <class T>
-T require(Result<T> result) {
-  if (!result) FAIL(result.error().describe());
-  return *std::move(result);
 }
 
 int allocations = 0;

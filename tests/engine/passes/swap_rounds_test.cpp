@@ -15,12 +15,6 @@
 namespace vkmesh::test {
 namespace {
 
-template <class T>
-T require(Result<T> result) {
-  if (!result) FAIL(result.error().describe());
-  return *std::move(result);
-}
-
 bool same(const HalfEdgeMesh& a, const HalfEdgeMesh& b) {
   return std::ranges::equal(a.origins(), b.origins()) && std::ranges::equal(a.twins(), b.twins()) &&
          std::ranges::equal(a.leadings(), b.leadings());

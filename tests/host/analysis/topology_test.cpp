@@ -26,7 +26,7 @@ IndexedFaceSet with_triangle(const IndexedFaceSet& mesh) {
   return test::both(mesh, triangle, Vec3(50.0f, 0.0f, 0.0f));
 }
 
-struct Expected {
+struct ExpectedTopology {
   std::string name;
   IndexedFaceSet mesh;
   std::int64_t euler;
@@ -38,7 +38,7 @@ struct Expected {
 }  // namespace
 
 TEST_CASE("topology: the surfaces of the textbooks", "[topology]") {
-  const std::vector<Expected> cases = {
+  const std::vector<ExpectedTopology> cases = {
       {"sphere", test::icosphere(2), 2, 0, 0, true, true},
       {"torus", test::torus(8, 6), 0, 0, 1, true, true},
       {"double torus", test::double_torus(), -2, 0, 2, true, true},
@@ -47,7 +47,7 @@ TEST_CASE("topology: the surfaces of the textbooks", "[topology]") {
       {"Möbius strip", test::mobius(9), 0, 1, std::nullopt, false, false},
       {"Klein bottle", test::klein_bottle(8, 6), 0, 0, std::nullopt, true, false},
   };
-  for (const Expected& expected : cases) {
+  for (const ExpectedTopology& expected : cases) {
     CAPTURE(expected.name);
     // Alone, and as one of two components.
     for (const bool alone : {true, false}) {

@@ -42,7 +42,7 @@ IndexedFaceSet bumpy_torus() {
   return mesh;
 }
 
-std::map<std::string, IndexedFaceSet> shapes() {
+std::map<std::string, IndexedFaceSet> shapes_by_name() {
   std::map<std::string, IndexedFaceSet> all;
   all["sphere"] = test::icosphere(4);
   all["bumpy torus"] = bumpy_torus();
@@ -85,7 +85,7 @@ struct Measures {
 };
 
 TEST_CASE("decimation: no point of either surface lies farther from the other than the bound", "[decimate]") {
-  for (const auto& [name, mesh] : shapes())
+  for (const auto& [name, mesh] : shapes_by_name())
     for (DecimateOptions options : ways()) {
       options.bounds.report_distance = true;
       options.target.ratio = 0.1;

@@ -22,7 +22,7 @@
 namespace vkmesh::test {
 namespace {
 
-DecimatedIndexBuffer run(const IndexedFaceSet& mesh, const DecimateOptions& options) {
+DecimatedIndexBuffer decimate_indices(const IndexedFaceSet& mesh, const DecimateOptions& options) {
   auto result = decimate_index_buffer(mesh.points, mesh.corners, options);
   if (!result) FAIL(result.error().describe());
   REQUIRE(result->indices.size() == 3 * result->source_face.size());
@@ -88,12 +88,12 @@ TEST_CASE("the default operation is taken, as a half-edge collapse; vertex remov
   IndexedFaceSet mesh = torus(40, 24);
   jitter(mesh, 0.01f, 1);
   DecimateOptions options = to_ratio(0.2);
-  const DecimatedIndexBuffer by_default = run(mesh, options);
+  const DecimatedIndexBuffer by_default = decimate_indices(mesh, options);
   options.operation = DecimateOperation::kHalfEdgeCollapse;
-  CHECK(by_default.indices == run(mesh, options).indices);
+  CHECK(by_default.indices == decimate_indices(mesh, options).indices);
   CHECK(faces_of(by_default) <= mesh.face_count() / 5);
   options.operation = DecimateOperation::kVertexRemoval;
-  const DecimatedIndexBuffer removed = run(mesh, options);
+  const DecimatedIndexBuffer removed = decimate_indices(mesh, options);
   CHECK(faces_of(removed) <= mesh.face_count() / 5);
   CHECK(removed.indices != by_default.indices);
   CHECK(boundary_of(mesh, removed.indices).empty());
@@ -116,7 +116,7 @@ TEST_CASE("a fin stays on its surface, and both are simplified", "[decimate]") {
       }
     }
     for (const std::uint32_t c : fin.corners) mesh.corners.push_back(vertex_of[c]);
-    const DecimatedIndexBuffer result = run(mesh, to_ratio(0.2));
+    const DecimatedIndexBuffer result = decimate_indices(mesh, to_ratio(0.2));
     CHECK(faces_of(result) <= mesh.face_count() / 5);
     const std::set<Place> places = places_of(mesh, result.indices);
     for (int x = 0; x <= 20; ++x) CHECK(places.contains({static_cast<float>(x), 10.0f, 0.0f}));
@@ -127,7 +127,7 @@ TEST_CASE("a fin stays on its surface, and both are simplified", "[decimate]") {
 TEST_CASE("a turned triangle stays, and all else is simplified", "[decimate]") {
   IndexedFaceSet mesh = icosphere(4);
   std::swap(mesh.corners[3 * 1000], mesh.corners[3 * 1000 + 1]);
-  const DecimatedIndexBuffer result = run(mesh, to_ratio(0.05));
+  const DecimatedIndexBuffer result = decimate_indices(mesh, to_ratio(0.05));
   CHECK(faces_of(result) <= mesh.face_count() / 20);
   CHECK(std::count(result.source_face.begin(), result.source_face.end(), 1000u) == 1);
   CHECK(boundary_of(mesh, result.indices) == boundary_of(mesh, mesh.corners));
@@ -143,12 +143,12 @@ std::vector<IndexedFaceSet> double_sided(const IndexedFaceSet& front) {
 TEST_CASE("the sides of a double-sided part are simplified each by itself", "[decimate]") {
   const IndexedFaceSet flat = grid(20, 20), ball = icosphere(3);
   for (const IndexedFaceSet& mesh : double_sided(flat)) {
-    const DecimatedIndexBuffer result = run(mesh, to_ratio(0.05));
+    const DecimatedIndexBuffer result = decimate_indices(mesh, to_ratio(0.05));
     CHECK(faces_of(result) <= mesh.face_count() / 20);
     CHECK(area_of(mesh, result.indices) == Approx(800));
   }
   for (const IndexedFaceSet& mesh : double_sided(ball)) {
-    const DecimatedIndexBuffer result = run(mesh, to_ratio(0.1));
+    const DecimatedIndexBuffer result = decimate_indices(mesh, to_ratio(0.1));
     CHECK(faces_of(result) <= mesh.face_count() / 10);
     CHECK(boundary_of(mesh, result.indices).empty());
     const auto front = static_cast<double>(std::ranges::lower_bound(result.source_face, ball.face_count()) -
@@ -159,13 +159,13 @@ TEST_CASE("the sides of a double-sided part are simplified each by itself", "[de
   IndexedFaceSet across = flat;
   for (Vec3& p : across.points) p = Vec3(p.x, 9.5f, p.y - 9.5f);
   const IndexedFaceSet leaf = both(flat, across);
-  CHECK(faces_of(run(leaf, to_ratio(0.01))) <= 16);
+  CHECK(faces_of(decimate_indices(leaf, to_ratio(0.01))) <= 16);
 }
 
 TEST_CASE("parts that touch in a point still do", "[decimate]") {
   const IndexedFaceSet square = grid(12, 12);
   const IndexedFaceSet mesh = both(square, square, Vec3(12, 12, 0));
-  const DecimatedIndexBuffer result = run(mesh, to_ratio(0.0));
+  const DecimatedIndexBuffer result = decimate_indices(mesh, to_ratio(0.0));
   CHECK(faces_of(result) <= 8);
   std::size_t at_point = 0;
   for (const std::uint32_t v : result.indices) at_point += mesh.points[v] == Vec3(12, 12, 0) ? 1 : 0;
@@ -191,7 +191,7 @@ TEST_CASE("closed parts stay closed, however they touch", "[decimate]") {
       options.operation = operation;
       options.bounds.error =
           Length::absolute(1e-4);  // where edges of several cubes are locked, more is out of reach
-      const DecimatedIndexBuffer result = run(mesh, options);
+      const DecimatedIndexBuffer result = decimate_indices(mesh, options);
       CHECK(boundary_of(mesh, result.indices).empty());
       CHECK(faces_of(result) < mesh.face_count() / 2);
       CHECK(area_of(mesh, result.indices) == Approx(6.0 * static_cast<double>(cells.size())));
@@ -211,7 +211,7 @@ TEST_CASE("any triangles over few points are taken", "[decimate]") {
                                static_cast<float>(q * 7 % 4));
     }
     for (std::uint32_t c = 3 * below(24); c > 0; --c) mesh.corners.push_back(below(points));
-    const DecimatedIndexBuffer result = run(mesh, to_ratio(0.3));
+    const DecimatedIndexBuffer result = decimate_indices(mesh, to_ratio(0.3));
     // An odd number of three or more faces cannot be paired: the ends of such an edge stay.
     std::map<std::pair<Place, Place>, int> faces;
     for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
@@ -235,7 +235,7 @@ TEST_CASE("vertices of an interleaved buffer are read where they lie", "[decimat
   for (const Vec3& p : mesh.points) uv.insert(uv.end(), {p.x * 3.0f, p.y - p.z});
   DecimateOptions options = to_ratio(0.1);
   options.attributes = {{2, uv, {}, 0.5, AttributeKind::kPlain}};
-  const DecimatedIndexBuffer wanted = run(mesh, options);
+  const DecimatedIndexBuffer wanted = decimate_indices(mesh, options);
   CHECK(wanted.attribute_error > 0);
   for (const std::size_t stride : {12u, 13u, 16u, 20u, 32u, 44u}) {
     INFO("a stride of " << stride << " bytes");

@@ -39,7 +39,7 @@ int euler_characteristic(const HalfEdgeMesh& mesh) {
 }
 
 /// Those that move no point. Edge collapses have tests of their own in decimate_edge_test.cpp.
-DecimateOperation any_operation() {
+DecimateOperation half_edge_collapse_or_removal() {
   return GENERATE(DecimateOperation::kHalfEdgeCollapse, DecimateOperation::kVertexRemoval);
 }
 
@@ -151,7 +151,7 @@ IndexedFaceSet manifold_part(const IndexedFaceSet& mesh) {
 }  // namespace
 
 TEST_CASE("decimation: every single collapse keeps the topology and the structure", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   for (const auto& [name, shape] : small_shapes())
     for (std::uint32_t seed = 0; seed < 4; seed += test::kSanitized ? 3 : 1) {
       IndexedFaceSet mesh = shape;
@@ -190,7 +190,7 @@ TEST_CASE("decimation: every single collapse keeps the topology and the structur
 }
 
 TEST_CASE("decimation: a collapse follows from the last one done, whatever the target", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   // The run to n - 1 faces is the run to n and one collapse more: its vertices are a subset.
   IndexedFaceSet mesh = test::icosphere(2);
   test::jitter(mesh, 0.05f, 7);
@@ -203,7 +203,7 @@ TEST_CASE("decimation: a collapse follows from the last one done, whatever the t
 }
 
 TEST_CASE("decimation: nothing smaller than a tetrahedron, a triangle or a pillow", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   const Decimated tetrahedron = run(test::tetrahedron(), to_faces(operation, 0));
   CHECK(tetrahedron.stop == DecimateStop::kNoLegalCollapse);
   CHECK(tetrahedron.collapses == 0);
@@ -229,7 +229,7 @@ TEST_CASE("decimation: nothing smaller than a tetrahedron, a triangle or a pillo
 }
 
 TEST_CASE("decimation: a sphere goes down to few faces without a fold", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   const IndexedFaceSet mesh = test::icosphere(4);
   for (const std::size_t target : {2560u, 512u, 51u}) {
     const Decimated result = run(mesh, to_faces(operation, target));
@@ -241,7 +241,7 @@ TEST_CASE("decimation: a sphere goes down to few faces without a fold", "[decima
 }
 
 TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
     // Jitter in the plane, away from the boundary, must not matter.
     IndexedFaceSet mesh = test::grid(12, 9);
@@ -271,7 +271,7 @@ TEST_CASE("decimation: a flat sheet keeps only what its outline needs", "[decima
 }
 
 TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   for (std::uint32_t seed = 0; seed <= 5; ++seed) {
     IndexedFaceSet mesh = test::grid(15, 15);
     if (seed > 0) test::jitter(mesh, 0.24f, seed);  // else many points lie on lines
@@ -289,7 +289,7 @@ TEST_CASE("decimation: no face of a flat jittered sheet turns over at any stage"
 }
 
 TEST_CASE("decimation: a finely cut cube is twelve triangles, at any place", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   for (const float shift : {0.0f, 1000.0f, 1.0e6f}) {
     // Six grids welded along their edges; 1/8 is exact at 1e6 in float.
     constexpr int kCuts = 8;
@@ -336,7 +336,7 @@ TEST_CASE("decimation: a finely cut cube is twelve triangles, at any place", "[d
 }
 
 TEST_CASE("decimation: a flat sheet that stands askew has an error of rounding only", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   // Points on z = x / 2 + y / 4 are exact in float, the unit normal in double is not: |n - n'| < 2^-52, over
   // a length of 15 that is an error below 15 · 2^-52 in distance, but the sum of squares is formed from terms
   // of about 15² · 2^-52: its root is what remains, below 15 · 2^-26 · 2 = 4.5e-7.
@@ -349,7 +349,7 @@ TEST_CASE("decimation: a flat sheet that stands askew has an error of rounding o
 }
 
 TEST_CASE("decimation: the error bound holds, and a larger one leaves fewer faces", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   IndexedFaceSet mesh = test::torus(48, 24);
   test::jitter(mesh, 0.01f, 3);
   std::size_t faces = mesh.face_count() + 1;
@@ -368,7 +368,7 @@ TEST_CASE("decimation: the error bound holds, and a larger one leaves fewer face
 }
 
 TEST_CASE("decimation: the error is the root of the mean squared distance from the planes", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   // A pyramid of height e on the unit square's centre, its base fixed by a border of weight. When the centre
   // falls to a corner, it lies there on two of its four planes; when it is removed, a diagonal passes below
   // it.
@@ -395,7 +395,7 @@ TEST_CASE("decimation: the error is the root of the mean squared distance from t
 }
 
 TEST_CASE("decimation: boundaries stay with weight and shrink without", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   // A disc: its around is a polygon of 64 sides.
   const IndexedFaceSet flat = test::grid(16, 16);
   IndexedFaceSet mesh = flat;
@@ -444,7 +444,7 @@ TEST_CASE("decimation: thin tips of the boundary stay when little is left", "[de
 }
 
 TEST_CASE("decimation: a smaller angle forbids more", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   IndexedFaceSet mesh = test::icosphere(3);
   test::jitter(mesh, 0.03f, 11);
   std::size_t last = 0;
@@ -460,7 +460,7 @@ TEST_CASE("decimation: a smaller angle forbids more", "[decimate]") {
 }
 
 TEST_CASE("decimation: faces without area, and points that coincide, do no harm", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   IndexedFaceSet mesh = test::grid(10, 10);
   // Rows 4 and 5 coincide, and so do three whole points elsewhere.
   for (Vec3& p : mesh.points)
@@ -517,7 +517,7 @@ TEST_CASE("decimation: faces without area, and points that coincide, do no harm"
 }
 
 TEST_CASE("decimation: large and small coordinates, and a far origin", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   const IndexedFaceSet unit = test::icosphere(3);
   const std::vector<std::uint32_t> expected = run(unit, to_faces(operation, 200)).source_vertex;
   for (const float scale : {1.0f / 1048576.0f, 1048576.0f}) {
@@ -538,7 +538,7 @@ TEST_CASE("decimation: large and small coordinates, and a far origin", "[decimat
 }
 
 TEST_CASE("decimation: twice the same bytes", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   IndexedFaceSet mesh = test::torus(40, 20);
   test::jitter(mesh, 0.02f, 1);
   const Decimated a = run(mesh, to_faces(operation, 300)), b = run(mesh, to_faces(operation, 300));
@@ -551,7 +551,7 @@ TEST_CASE("decimation: twice the same bytes", "[decimate]") {
 }
 
 TEST_CASE("decimation: targets already met change nothing but isolated vertices", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   IndexedFaceSet mesh = test::icosphere(1);
   mesh.points.insert(mesh.points.begin(), Vec3(9, 9, 9));
   for (std::uint32_t& corner : mesh.corners) ++corner;
@@ -567,7 +567,7 @@ TEST_CASE("decimation: targets already met change nothing but isolated vertices"
 }
 
 TEST_CASE("decimation: options and input out of range are refused", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   const IndexedFaceSet mesh = test::icosphere(1);
   const HalfEdgeMesh input = half_edges(mesh);
   const auto code = [&](const HalfEdgeMesh& m, std::span<const Vec3> points, const DecimateOptions& options) {
@@ -600,7 +600,7 @@ TEST_CASE("decimation: options and input out of range are refused", "[decimate]"
 }
 
 TEST_CASE("decimation: can be cancelled at any report, and leaves the input as it was", "[decimate]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   const IndexedFaceSet mesh = test::icosphere(5);
   const HalfEdgeMesh input = half_edges(mesh);
   int reports = 0;
@@ -633,7 +633,7 @@ TEST_CASE("decimation: names of the reasons to stop", "[decimate]") {
 
 TEST_CASE("decimation: every manifold mesh of the CGAL collection stays manifold at any ratio",
           "[decimate][data]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   std::size_t tried = 0;
   for (const auto& path : test::cgal_meshes_for_long_work()) {
     auto file = read_mesh(path);
@@ -660,7 +660,7 @@ TEST_CASE("decimation: every manifold mesh of the CGAL collection stays manifold
 
 TEST_CASE("decimation: the dragon's coarse versions, with the isolated points and tatters they have",
           "[decimate][data]") {
-  const DecimateOperation operation = any_operation();
+  const DecimateOperation operation = half_edge_collapse_or_removal();
   for (const char* name : {"dragon_vrip_res3.ply.gz", "dragon_vrip_res4.ply.gz"}) {
     auto file = read_mesh(test::dragon(name));
     REQUIRE(file);

@@ -25,7 +25,7 @@ namespace {
 using detail::RetriangulationAttributes, detail::RetriangulationBatch;
 using test::cross, test::dot, test::length;
 
-Decimated run(const IndexedFaceSet& mesh, DecimateOptions options) {
+Decimated remove_vertices(const IndexedFaceSet& mesh, DecimateOptions options) {
   options.operation = DecimateOperation::kVertexRemoval;
   auto result = decimate(test::half_edges(mesh), mesh.points, options);
   if (!result) FAIL(result.error().describe());
@@ -584,7 +584,7 @@ TEST_CASE("decimation: what neighbours get of a vertex that goes counts when the
         if (is_parted(p) != is_parted(q) ||
             std::none_of(at_p.begin(), at_p.end(), [&](const Face& f) { return f.corners[1] == q; }))
           continue;
-        const Decimated d = run(mesh, options);
+        const Decimated d = remove_vertices(mesh, options);
         if (d.history.size() != 2) continue;
         const std::uint32_t first = d.history[0].removed, second = d.history[1].removed;
         Faces between = before;
@@ -708,7 +708,7 @@ TEST_CASE("decimation: vertex removal makes no edge that is there, and takes the
   DecimateOptions options;
   options.locked.vertices = {0, 1, 2, 3};
   options.bounds.normal_deviation = 1.5;
-  const Decimated result = run(mesh, options);
+  const Decimated result = remove_vertices(mesh, options);
   REQUIRE(result.collapses == 1);
   REQUIRE(result.mesh.face_count() == 4);
   std::size_t edges = 0;
@@ -721,11 +721,11 @@ TEST_CASE("decimation: vertex removal makes no edge that is there, and takes the
 
   // The top lies 0.1 above the edge from 0 to 2, and 0.4 below that from 1 to 3, which counts.
   options.bounds.error = Length::absolute(0.3);
-  const Decimated refused = run(mesh, options);
+  const Decimated refused = remove_vertices(mesh, options);
   CHECK(refused.collapses == 0);
   CHECK(refused.stop == DecimateStop::kErrorBound);
   options.bounds.error = Length::absolute(0.5);
-  CHECK(run(mesh, options).collapses == 1);
+  CHECK(remove_vertices(mesh, options).collapses == 1);
 }
 
 TEST_CASE("decimation: vertex removal keeps the shape of a flat outline with a notch", "[decimate]") {
@@ -742,7 +742,7 @@ TEST_CASE("decimation: vertex removal keeps the shape of a flat outline with a n
   }
   DecimateOptions options;
   options.bounds.error = Length::absolute(1e-9);
-  const Decimated result = run(notched, options);
+  const Decimated result = remove_vertices(notched, options);
   CHECK(result.mesh.face_count() == 4);
   CHECK(result.error == 0);
   double area = 0;
@@ -773,7 +773,7 @@ TEST_CASE("decimation: a vertex of many neighbours goes when it has fewer", "[de
     mesh.corners.insert(mesh.corners.end(), {count, i, (i + 1) % count});
   DecimateOptions options;
   options.bounds.error = Length::absolute(1e-6);
-  const Decimated result = run(mesh, options);
+  const Decimated result = remove_vertices(mesh, options);
   CHECK(result.mesh.face_count() == 2);
   CHECK(result.source_vertex == std::vector<std::uint32_t>{0, kSide, 2 * kSide, 3 * kSide});
 }
@@ -784,7 +784,7 @@ TEST_CASE("decimation: vertex removal's history names what went and what stands 
   DecimateOptions options;
   options.keep_history = true;
   options.target.faces = 200;
-  const Decimated result = run(mesh, options);
+  const Decimated result = remove_vertices(mesh, options);
   REQUIRE(result.history.size() == result.collapses);
   std::vector<std::uint32_t> stands(mesh.points.size());
   std::iota(stands.begin(), stands.end(), 0u);

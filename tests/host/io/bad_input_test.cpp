@@ -67,24 +67,6 @@ std::vector<std::pair<std::string, std::string>> valid_files() {
 }
 
 /// Whatever the bytes are, the answer is a sound mesh or one error with a sentence.
-void check_sound(std::string_view content, const std::string& name) {
-  const auto file = parse_mesh(as_bytes(content), name);
-  if (!file) {
-    if (file.error().code != ErrorCode::kUnreadable || file.error().message.empty())
-      FAIL(name << ": " << file.error().describe());
-    return;
-  }
-  const auto mesh = to_indexed_face_set(*file);
-  REQUIRE(mesh);
-  for (const std::uint32_t c : mesh->corners)
-    if (c >= mesh->points.size()) FAIL(name << " holds a corner out of range");
-  // The writer checks offsets and channel sizes.
-  if (!mesh->points.empty()) {
-    const auto bytes = encode_mesh(*mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
-    if (!bytes) FAIL(name << ": " << bytes.error().describe());
-  }
-}
-
 /// Runs `body` in a child process and returns what it returned.
 int in_child(const std::function<int()>& body) {
   const pid_t child = fork();

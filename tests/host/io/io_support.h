@@ -175,4 +175,30 @@ inline std::vector<IndexedFaceSet> with_scene_channels(std::vector<IndexedFaceSe
   return meshes;
 }
 
+/// The numbers of the channel of that name; empty where there is none.
+inline std::vector<float> values_of(const std::vector<Channel>& channels, const std::string& name) {
+  const Channel* channel = find_channel(channels, name);
+  if (channel == nullptr) return {};
+  return std::get<std::vector<float>>(channel->values);
+}
+
+/// Reading refuses the content with a sentence, or gives a mesh that can be written.
+inline void check_sound(std::string_view content, const std::string& name) {
+  const auto file = parse_mesh(as_bytes(content), name);
+  if (!file) {
+    if (file.error().code != ErrorCode::kUnreadable || file.error().message.empty())
+      FAIL(name << ": " << file.error().describe());
+    return;
+  }
+  const auto mesh = to_indexed_face_set(*file);
+  REQUIRE(mesh);
+  for (const std::uint32_t c : mesh->corners)
+    if (c >= mesh->points.size()) FAIL(name << " holds a corner out of range");
+  // The writer checks offsets and channel sizes.
+  if (!mesh->points.empty()) {
+    const auto bytes = encode_mesh(*mesh, write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
+    if (!bytes) FAIL(name << ": " << bytes.error().describe());
+  }
+}
+
 }  // namespace vkmesh::test

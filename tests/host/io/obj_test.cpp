@@ -8,7 +8,7 @@ using namespace vkmesh::test;
 
 namespace {
 
-const char* kHead = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const char* kSquarePoints = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 }  // namespace
 
@@ -55,37 +55,38 @@ TEST_CASE("OBJ takes every form of index", "[io][obj]") {
   const std::vector<std::uint32_t> quad = {0, 1, 2, 3};
   for (const char* face : {"f 1 2 3 4\n", "f -4 -3 -2 -1\n", "f 1 -3 3 -1", "f +1 2\t3 4  # comment\n",
                            "f 1 2 \\\n3 4\n", "f 1 2 \\\r\n  3 \\\n 4\r\n", "f 1 2\\\n 3 4\n"})
-    CHECK(parse(std::string(kHead) + face, "a.obj").corners == quad);
+    CHECK(parse(std::string(kSquarePoints) + face, "a.obj").corners == quad);
 
   const std::string attributes = "vt 0.5 1\nvt 0.25\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\n";
-  const IndexedFaceSet all = parse(kHead + attributes + "f 1/1/1 2/2/-1 3/3/1\n", "a.obj");
+  const IndexedFaceSet all = parse(kSquarePoints + attributes + "f 1/1/1 2/2/-1 3/3/1\n", "a.obj");
   REQUIRE(all.corner_channels.size() == 2);
   CHECK(std::get<std::vector<float>>(find_channel(all.corner_channels, "uv")->values) ==
         std::vector<float>{0.5f, 1, 0.25f, 0, 1, 1});
   CHECK(std::get<std::vector<float>>(find_channel(all.corner_channels, "normal")->values) ==
         std::vector<float>{0, 0, 1, 0, 1, 0, 0, 0, 1});
-  const IndexedFaceSet uv = parse(kHead + attributes + "f 1/1 2/1/ 3/-3\n", "a.obj");
+  const IndexedFaceSet uv = parse(kSquarePoints + attributes + "f 1/1 2/1/ 3/-3\n", "a.obj");
   REQUIRE(uv.corner_channels.size() == 1);
   CHECK(std::get<std::vector<float>>(uv.corner_channels[0].values) ==
         std::vector<float>{0.5f, 1, 0.5f, 1, 0.5f, 1});
-  const IndexedFaceSet normal = parse(kHead + attributes + "f 1//1 2//2 3//2\n", "a.obj");
+  const IndexedFaceSet normal = parse(kSquarePoints + attributes + "f 1//1 2//2 3//2\n", "a.obj");
   REQUIRE(normal.corner_channels.size() == 1);
   CHECK(normal.corner_channels[0].name == "normal");
 }
 
 TEST_CASE("an OBJ face may precede its vertices", "[io][obj]") {
-  CHECK(parse(std::string("f 1 2 3\n") + kHead, "a.obj").corners == std::vector<std::uint32_t>{0, 1, 2});
-  const Error error = parse_error(std::string("f 1 2 3\nf 1 2 5\n") + kHead, "a.obj");
+  CHECK(parse(std::string("f 1 2 3\n") + kSquarePoints, "a.obj").corners ==
+        std::vector<std::uint32_t>{0, 1, 2});
+  const Error error = parse_error(std::string("f 1 2 3\nf 1 2 5\n") + kSquarePoints, "a.obj");
   CHECK(error.where.line == 2u);
   CHECK(error.message == "a face names 'v' 5, but there are 4");
 }
 
 TEST_CASE("OBJ content that is not kept is named", "[io][obj]") {
-  const MeshFile file =
-      parse_file(std::string("mtllib a b.mtl\no thing\nversion 1\ng one two\nusemtl red\ns off\n") + kHead +
-                     "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1 2\nf 1 3 4\nl 1 2\nl 2 3\np 1\ncurv 0 1 \\\n1 "
-                     "2\nv 1 2 3 0.5\n",
-                 "a.obj");
+  const MeshFile file = parse_file(
+      std::string("mtllib a b.mtl\no thing\nversion 1\ng one two\nusemtl red\ns off\n") + kSquarePoints +
+          "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1 2\nf 1 3 4\nl 1 2\nl 2 3\np 1\ncurv 0 1 \\\n1 "
+          "2\nv 1 2 3 0.5\n",
+      "a.obj");
   CHECK(sentences(file.notes) ==
         std::vector<std::string>{"1 'vt' lines ignored: no corner of a face names one",
                                  "3 corners without 'normal' got 0",
@@ -105,8 +106,8 @@ TEST_CASE("OBJ materials and groups are labels of faces", "[io][obj]") {
   using Numbers = std::vector<std::uint32_t>;
   using Labels = std::vector<std::string>;
   const std::string face = "f 1 2 3\n";
-  const IndexedFaceSet mesh = parse(kHead + face + "usemtl  red paint \t# a comment\ng top\n" + face + face +
-                                        "usemtl blue\no side\n" + face +
+  const IndexedFaceSet mesh = parse(kSquarePoints + face + "usemtl  red paint \t# a comment\ng top\n" + face +
+                                        face + "usemtl blue\no side\n" + face +
                                         "usemtl red paint\nusemtl unused\nusemtl\n" + face + "g top\n" + face,
                                     "a.obj");
   const Channel* material = find_channel(mesh.face_channels, "material");
@@ -125,7 +126,7 @@ TEST_CASE("OBJ materials and groups are labels of faces", "[io][obj]") {
 
   const WriteOptions options = write_as(FileFormat::kObj, FileEncoding::kAscii);
   const std::string text = encode(mesh, options);
-  CHECK(text == std::string(kHead) +
+  CHECK(text == std::string(kSquarePoints) +
                     "f 1 2 3\ng top\nusemtl red paint\nf 1 2 3\nf 1 2 3\no side\nusemtl blue\n"
                     "f 1 2 3\nusemtl\nf 1 2 3\nf 1 2 3\n");
   const IndexedFaceSet again = parse(text, "a.obj");
@@ -134,8 +135,9 @@ TEST_CASE("OBJ materials and groups are labels of faces", "[io][obj]") {
     CHECK(find_channel(again.face_channels, name)->labels == find_channel(mesh.face_channels, name)->labels);
 
   // A name before the first face needs no empty one; names without faces are none.
-  CHECK(parse(std::string("usemtl a\n") + kHead + face, "a.obj").face_channels[0].labels == Labels{"a"});
-  CHECK(parse(kHead + face + "usemtl a\n", "a.obj").face_channels.empty());
+  CHECK(parse(std::string("usemtl a\n") + kSquarePoints + face, "a.obj").face_channels[0].labels ==
+        Labels{"a"});
+  CHECK(parse(kSquarePoints + face + "usemtl a\n", "a.obj").face_channels.empty());
 }
 
 TEST_CASE("labels that OBJ cannot hold are named", "[io][obj]") {

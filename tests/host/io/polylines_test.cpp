@@ -8,7 +8,7 @@ using namespace vkmesh::test;
 
 namespace {
 
-const std::vector<Vec3> kPoints = {{0, 0, 0}, {1, 0.1f, 0}, {9, 9, 9}, {-2.5f, 0, 1e-9f}};
+const std::vector<Vec3> kPolylinePoints = {{0, 0, 0}, {1, 0.1f, 0}, {9, 9, 9}, {-2.5f, 0, 1e-9f}};
 using Lines = std::vector<std::vector<std::uint32_t>>;
 
 }  // namespace
@@ -17,9 +17,9 @@ TEST_CASE("polylines are lines of the points that they name, in the order in whi
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.obj";
   // A loop is closed by its first point.
-  REQUIRE(write_polylines(path, kPoints, Lines{{3, 1}, {1, 0, 3, 1}}));
+  REQUIRE(write_polylines(path, kPolylinePoints, Lines{{3, 1}, {1, 0, 3, 1}}));
   CHECK(read_bytes(path) == "v -2.5 0 1e-09\nv 1 0.1 0\nv 0 0 0\nl 1 2\nl 2 3 1 2\n");
-  REQUIRE(write_polylines(path, kPoints, Lines{}));
+  REQUIRE(write_polylines(path, kPolylinePoints, Lines{}));
   CHECK(read_bytes(path).empty());
   CHECK(folder.entries() == 1);
 }
@@ -43,14 +43,15 @@ TEST_CASE("polylines of many points come whole", "[io]") {
 TEST_CASE("polylines that cannot be written leave no file, and the one before as it was", "[io]") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.obj";
-  CHECK(write_polylines(path, kPoints, Lines{{0, 1}, {1, 4}}).error().code == ErrorCode::kUsage);
+  CHECK(write_polylines(path, kPolylinePoints, Lines{{0, 1}, {1, 4}}).error().code == ErrorCode::kUsage);
   CHECK(folder.entries() == 0);
   write_bytes(path, "before");
-  CHECK(write_polylines(path, kPoints, Lines{{0xffffffffu}}).error().code == ErrorCode::kUsage);
+  CHECK(write_polylines(path, kPolylinePoints, Lines{{0xffffffffu}}).error().code == ErrorCode::kUsage);
   CHECK(read_bytes(path) == "before");
   CHECK(folder.entries() == 1);
-  CHECK(write_polylines(folder.path() / "none" / "a.obj", kPoints, Lines{{0, 1}}).error().code ==
+  CHECK(write_polylines(folder.path() / "none" / "a.obj", kPolylinePoints, Lines{{0, 1}}).error().code ==
         ErrorCode::kNotWritable);
-  CHECK(write_polylines(folder.path(), kPoints, Lines{{0, 1}}).error().code == ErrorCode::kNotWritable);
+  CHECK(write_polylines(folder.path(), kPolylinePoints, Lines{{0, 1}}).error().code ==
+        ErrorCode::kNotWritable);
   CHECK(folder.entries() == 1);
 }

@@ -51,11 +51,11 @@ const std::map<std::string, std::string> kRefusals = {
 };
 
 /// What a file must give.
-struct Expected {
+struct ExpectedFile {
   std::size_t points, faces;
   std::vector<std::string> codes;  ///< Those of its notes.
 };
-const std::map<std::string, Expected> kMeshes = {
+const std::map<std::string, ExpectedFile> kMeshes = {
     {"gltf-data-without-a-type.gltf", {3, 1, {}}},
     {"gltf-indices-without-a-view.gltf", {3, 1, {}}},
     {"gltf-instances.gltf", {6, 2, {}}},

@@ -13,50 +13,32 @@ namespace {
 using Floats = std::vector<float>;
 using Corners = std::vector<std::uint32_t>;
 
-const std::string kHead = "#VRML V2.0 utf8\n";
+const std::string kVrml2 = "#VRML V2.0 utf8\n";
 const std::string kCoord = "coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] } ";
 const std::string kTwo = kCoord + "coordIndex [ 0 1 2 -1 0 2 3 -1 ] ";
 
-MeshFile scene_file(const std::string& body) {
-  return parse_file(kHead + body, "a.wrl");
+MeshFile world_file(const std::string& body) {
+  return parse_file(kVrml2 + body, "a.wrl");
 }
 
-IndexedFaceSet scene(const std::string& body) {
-  return std::get<IndexedFaceSet>(scene_file(body).geometry);
+IndexedFaceSet world(const std::string& body) {
+  return std::get<IndexedFaceSet>(world_file(body).geometry);
 }
 
 std::string face_set(const std::string& fields) {
   return "Shape { geometry IndexedFaceSet { " + fields + "} } ";
 }
 
-Floats values_of(const std::vector<Channel>& channels, const std::string& name) {
-  const Channel* channel = find_channel(channels, name);
-  if (channel == nullptr) return {};
-  return std::get<Floats>(channel->values);
-}
-
-void check_sound(std::string_view content) {
-  const auto file = parse_mesh(as_bytes(content), "a.wrl");
-  if (!file) {
-    if (file.error().code != ErrorCode::kUnreadable || file.error().message.empty())
-      FAIL(file.error().describe());
-    return;
-  }
-  const auto bytes = encode_mesh(std::get<IndexedFaceSet>(file->geometry),
-                                 write_as(FileFormat::kPly, FileEncoding::kBinaryLittleEndian));
-  if (!bytes) FAIL(bytes.error().describe());
-}
-
 }  // namespace
 
 TEST_CASE("VRML 2 shapes become faces and points", "[io][vrml]") {
-  const MeshFile file = scene_file(face_set(kTwo));
+  const MeshFile file = world_file(face_set(kTwo));
   CHECK(file.format == FileFormat::kVrml2);
   CHECK(file.notes.empty());
   CHECK(std::get<IndexedFaceSet>(file.geometry).corners == Corners{0, 1, 2, 0, 2, 3});
-  CHECK(scene(face_set("ccw FALSE " + kTwo)).corners == Corners{0, 2, 1, 0, 3, 2});
-  CHECK(scene(face_set(kCoord + "coordIndex [ 0 1 2 3 ] ")).face_offsets == Corners{0, 4});
-  const IndexedFaceSet cloud = scene(
+  CHECK(world(face_set("ccw FALSE " + kTwo)).corners == Corners{0, 2, 1, 0, 3, 2});
+  CHECK(world(face_set(kCoord + "coordIndex [ 0 1 2 3 ] ")).face_offsets == Corners{0, 4});
+  const IndexedFaceSet cloud = world(
       "Shape { geometry PointSet { coord Coordinate { point [ 1 2 3, 4 5 6 ] } "
       "color Color { color [ 1 0 0, 0 0.5 0 ] } } }");
   CHECK(cloud.points == std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
@@ -65,28 +47,28 @@ TEST_CASE("VRML 2 shapes become faces and points", "[io][vrml]") {
 
 TEST_CASE("VRML 2 attributes are of points, corners or faces", "[io][vrml]") {
   const std::string color = "color Color { color [ 0 0 0, 1 0 0, 0 1 0, 0 0 1 ] } ";
-  CHECK(values_of(scene(face_set(kTwo + color)).point_channels, "color") ==
+  CHECK(values_of(world(face_set(kTwo + color)).point_channels, "color") ==
         Floats{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
-  CHECK(values_of(scene(face_set(kTwo + color + "colorIndex [ 3 3 3 -1 1 1 0 -1 ] ")).corner_channels,
+  CHECK(values_of(world(face_set(kTwo + color + "colorIndex [ 3 3 3 -1 1 1 0 -1 ] ")).corner_channels,
                   "color") == Floats{0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0});
-  CHECK(values_of(scene(face_set(kTwo + color + "colorPerVertex FALSE ")).face_channels, "color") ==
+  CHECK(values_of(world(face_set(kTwo + color + "colorPerVertex FALSE ")).face_channels, "color") ==
         Floats{0, 0, 0, 1, 0, 0});
-  CHECK(values_of(scene(face_set(kTwo + color + "colorPerVertex FALSE colorIndex [ 3 2 ] ")).face_channels,
+  CHECK(values_of(world(face_set(kTwo + color + "colorPerVertex FALSE colorIndex [ 3 2 ] ")).face_channels,
                   "color") == Floats{0, 0, 1, 0, 1, 0});
   const std::string normal = "normal Normal { vector [ 0 0 1, 0 1 0, 1 0 0, 0 0 -1 ] } ";
-  CHECK(values_of(scene(face_set(kTwo + normal)).point_channels, "normal") ==
+  CHECK(values_of(world(face_set(kTwo + normal)).point_channels, "normal") ==
         Floats{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1});
-  CHECK(values_of(scene(face_set(kTwo + normal + "normalPerVertex FALSE normalIndex [ 1 0 ] ")).face_channels,
+  CHECK(values_of(world(face_set(kTwo + normal + "normalPerVertex FALSE normalIndex [ 1 0 ] ")).face_channels,
                   "normal") == Floats{0, 1, 0, 0, 0, 1});
   const std::string uv = "texCoord TextureCoordinate { point [ 0 0, 1 0, 1 1, 0 1 ] } ";
-  CHECK(values_of(scene(face_set(kTwo + uv)).point_channels, "uv") == Floats{0, 0, 1, 0, 1, 1, 0, 1});
-  CHECK(values_of(scene(face_set(kTwo + uv + "texCoordIndex [ 3 3 3 -1 1 1 0 -1 ] ")).corner_channels,
+  CHECK(values_of(world(face_set(kTwo + uv)).point_channels, "uv") == Floats{0, 0, 1, 0, 1, 1, 0, 1});
+  CHECK(values_of(world(face_set(kTwo + uv + "texCoordIndex [ 3 3 3 -1 1 1 0 -1 ] ")).corner_channels,
                   "uv") == Floats{0, 1, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0});
   const std::string red =
       "Shape { appearance DEF Red Appearance { material Material { diffuseColor 1 0 0 } "
       "texture ImageTexture { url \"a.png\" } } geometry IndexedFaceSet { ";
-  CHECK(values_of(scene(red + kTwo + "} }").face_channels, "color") == Floats{1, 0, 0, 1, 0, 0});
-  CHECK(values_of(scene(red + kTwo + "} } " + face_set(kTwo)).face_channels, "color") ==
+  CHECK(values_of(world(red + kTwo + "} }").face_channels, "color") == Floats{1, 0, 0, 1, 0, 0});
+  CHECK(values_of(world(red + kTwo + "} } " + face_set(kTwo)).face_channels, "color") ==
         Floats{1, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1});
 }
 
@@ -95,7 +77,7 @@ TEST_CASE("VRML 2 groups move and choose their children", "[io][vrml]") {
       "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 1 2 3, 0 0 0, 5 5 5 ] } "
       "coordIndex [ 0 1 2 ] } } ";
   const auto first = [&](const std::string& head, const std::string& tail) {
-    return scene(head + triangle + tail).points.at(0);
+    return world(head + triangle + tail).points.at(0);
   };
   const auto check_near = [](const Vec3& a, const Vec3& b) {
     for (int axis = 0; axis < 3; ++axis) CHECK(a[axis] == Approx(b[axis]).margin(1e-6));
@@ -114,28 +96,28 @@ TEST_CASE("VRML 2 groups move and choose their children", "[io][vrml]") {
   CHECK(first("Transform { translation 1 0 0 children Transform { scale 2 2 2 children [ ", "] } }") ==
         Vec3(3, 4, 6));
   // A transform ends with its node.
-  CHECK(scene("Transform { translation 1 0 0 } " + triangle).points[0] == Vec3(1, 2, 3));
+  CHECK(world("Transform { translation 1 0 0 } " + triangle).points[0] == Vec3(1, 2, 3));
   for (const char* group : {"Group", "Anchor", "Billboard", "Collision"})
     CHECK(first(std::string(group) + " { children [ ", "] }") == Vec3(1, 2, 3));
   const std::string other = face_set(kTwo);
-  CHECK(scene("Switch { whichChoice 1 choice [ " + triangle + other + "] }").corners.size() == 6);
-  CHECK(scene("Switch { choice [ " + triangle + other + "] whichChoice 0 }").corners.size() == 3);
-  const MeshFile none = scene_file(triangle + "Switch { choice [ " + triangle + other + "] }");
+  CHECK(world("Switch { whichChoice 1 choice [ " + triangle + other + "] }").corners.size() == 6);
+  CHECK(world("Switch { choice [ " + triangle + other + "] whichChoice 0 }").corners.size() == 3);
+  const MeshFile none = world_file(triangle + "Switch { choice [ " + triangle + other + "] }");
   CHECK(sentences(none.notes) ==
         std::vector<std::string>{"2 children that a 'Switch' does not choose ignored"});
-  const MeshFile lod = scene_file("LOD { range [ 5 ] level [ " + triangle + other + "] }");
+  const MeshFile lod = world_file("LOD { range [ 5 ] level [ " + triangle + other + "] }");
   CHECK(std::get<IndexedFaceSet>(lod.geometry).corners.size() == 3);
   CHECK(sentences(lod.notes) == std::vector<std::string>{"1 levels of detail but the first ignored"});
 }
 
 TEST_CASE("VRML 2 nodes are used again", "[io][vrml]") {
   const IndexedFaceSet mesh =
-      scene("DEF S " + face_set(kTwo) + "Transform { translation 0 0 5 children [ USE S ] } USE S");
+      world("DEF S " + face_set(kTwo) + "Transform { translation 0 0 5 children [ USE S ] } USE S");
   CHECK(mesh.points.size() == 8);
   CHECK(mesh.corners.size() == 18);
   CHECK(mesh.points[4] == Vec3(0, 0, 5));
   const IndexedFaceSet coords =
-      scene(face_set("coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 1 1 0 ] } coordIndex [ 0 1 2 ] ") +
+      world(face_set("coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 1 1 0 ] } coordIndex [ 0 1 2 ] ") +
             face_set("coord USE C coordIndex [ 2 1 0 ] "));
   CHECK(coords.points.size() == 3);
   CHECK(coords.corners == Corners{0, 1, 2, 2, 1, 0});
@@ -144,11 +126,11 @@ TEST_CASE("VRML 2 nodes are used again", "[io][vrml]") {
     const std::string use = " USE N" + std::to_string(i - 1);
     laughs += "DEF N" + std::to_string(i) + " Group { children [" + use + use + use + use + " ] }\n";
   }
-  CHECK_THAT(parse_error(kHead + laughs, "a.wrl").message, Catch::Contains("out of proportion to the file"));
+  CHECK_THAT(parse_error(kVrml2 + laughs, "a.wrl").message, Catch::Contains("out of proportion to the file"));
 }
 
 TEST_CASE("VRML 2 content that is not kept is named", "[io][vrml]") {
-  const MeshFile file = scene_file(
+  const MeshFile file = world_file(
       "PROTO Wheel [ field SFVec3f s 1 1 1 exposedField SFNode n Group { } ] { Transform { scale IS s } }\n"
       "EXTERNPROTO Far [ field SFFloat r ] [ \"a.wrl#Far\" ]\nEXTERNPROTO Near [ ] \"b.wrl\"\n"
       "WorldInfo { title \"a\" } DEF T TimeSensor { } Wheel { s 2 2 2 } Wheel { } Inline { url \"c.wrl\" }\n"
@@ -167,7 +149,7 @@ TEST_CASE("VRML 2 content that is not kept is named", "[io][vrml]") {
 }
 
 TEST_CASE("a PROTO may define others within its body", "[io][vrml]") {
-  const auto mesh = [](const std::string& body) { return parse(kHead + body, "a.wrl"); };
+  const auto mesh = [](const std::string& body) { return parse(kVrml2 + body, "a.wrl"); };
   // The width of box number `box`.
   const auto width_of = [](const IndexedFaceSet& boxes, std::size_t box) {
     float low = boxes.points[8 * box].x, high = low;
@@ -190,7 +172,7 @@ TEST_CASE("a PROTO may define others within its body", "[io][vrml]") {
   CHECK(width(nested + "Crate { }") == 1);
   CHECK(mesh(nested + "Crate { more [ Shape { geometry Box { } } Shape { geometry Box { } } ] }")
             .face_count() == 18);
-  CHECK(sentences(scene_file(nested + "Crate { } Crate { }").notes) ==
+  CHECK(sentences(world_file(nested + "Crate { } Crate { }").notes) ==
         std::vector<std::string>{"4 instances of PROTOs expanded"});
   CHECK(width("PROTO A [ field SFVec3f a 7 1 1 ] { PROTO B [ field SFVec3f size 6 1 1 ] " + box +
               "B { } } A { }") == 6);
@@ -206,7 +188,7 @@ TEST_CASE("a PROTO may define others within its body", "[io][vrml]") {
   CHECK(width_of(own, 1) == 4);
   CHECK(width_of(own, 2) == 4);
   // What is defined in a body is not known outside it.
-  CHECK(sentences(scene_file(nested + "Crate { } Side { }").notes).back() == "1 'Side' nodes ignored");
+  CHECK(sentences(world_file(nested + "Crate { } Side { }").notes).back() == "1 'Side' nodes ignored");
   // Three levels deep.
   CHECK(
       width("PROTO A [ field SFVec3f a 1 1 1 ] { PROTO B [ field SFVec3f b 1 1 1 ] { PROTO C [ field SFVec3f "
@@ -215,7 +197,7 @@ TEST_CASE("a PROTO may define others within its body", "[io][vrml]") {
 }
 
 TEST_CASE("a PROTO that stands in itself is refused", "[io][vrml][bad]") {
-  const auto error = [](const std::string& body) { return parse_error(kHead + body, "a.wrl"); };
+  const auto error = [](const std::string& body) { return parse_error(kVrml2 + body, "a.wrl"); };
   const std::string shape = "Shape { geometry Box { } } ";
   const std::string itself = "PROTO A [ ] {\nGroup { children [ A { } ] } }\nA { }";
   // One of that name before it does not matter.
@@ -239,7 +221,7 @@ TEST_CASE("a PROTO that stands in itself is refused", "[io][vrml][bad]") {
 }
 
 TEST_CASE("malformed VRML 2 files are refused where they break", "[io][vrml][bad]") {
-  const auto error = [](const std::string& body) { return parse_error(kHead + body, "a.wrl"); };
+  const auto error = [](const std::string& body) { return parse_error(kVrml2 + body, "a.wrl"); };
   CHECK(error(face_set(kCoord + "coordIndex [ 0 1\n9 -1 ] ")).where.line == 3u);
   CHECK(
       error(face_set(kTwo + "color Color { color [ 0 0 0 ] } colorIndex [ 0 0 0 -1\n0 0 1 ] ")).where.line ==
@@ -270,7 +252,7 @@ TEST_CASE("VRML 2 round trips are lossless for what they hold", "[io][vrml]") {
 
 TEST_CASE("VRML 2 files cut or changed anywhere are refused or sound", "[io][vrml][bad][fuzz]") {
   const std::string content =
-      kHead +
+      kVrml2 +
       "PROTO A [ field SFFloat r 1 ] { Group { } }\nDEF G Group { children [ Transform { rotation 0 1 0 1 "
       "scale 1 2 1 children [ " +
       face_set(
@@ -281,9 +263,9 @@ TEST_CASE("VRML 2 files cut or changed anywhere are refused or sound", "[io][vrm
       "}\n"
       "A { r 2 }\nROUTE G.a TO G.b\n";
   CHECK(parse(content, "a.wrl").face_count() == 4);
-  for (std::size_t size = 0; size < content.size(); ++size) check_sound(content.substr(0, size));
+  for (std::size_t size = 0; size < content.size(); ++size) check_sound(content.substr(0, size), "a.wrl");
   std::mt19937 random(31);
-  for (std::size_t at = kHead.size(); at < content.size(); ++at)
+  for (std::size_t at = kVrml2.size(); at < content.size(); ++at)
     for (int variant = 0; variant < 6; ++variant) {
       std::string bytes = content;
       if (variant == 0)
@@ -292,6 +274,6 @@ TEST_CASE("VRML 2 files cut or changed anywhere are refused or sound", "[io][vrm
         bytes[at] = "0123456789-+.eE#{}[]\"(), \n"[random() % 26];
       else
         bytes[at] = static_cast<char>(random());
-      check_sound(bytes);
+      check_sound(bytes, "a.wrl");
     }
 }

@@ -19,7 +19,7 @@ using namespace vkmesh;
 
 namespace {
 
-std::vector<IndexedFaceSet> shapes() {
+std::vector<IndexedFaceSet> polygon_shapes() {
   IndexedFaceSet mixed = test::quad_cube();  // Quads, triangles and a pentagon.
   mixed.points.insert(mixed.points.end(), {{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {5, 1, 0}, {4, 1, 0}, {5, 2, 0}});
   mixed.corners.insert(mixed.corners.end(), {8, 9, 10, 11, 12, 11, 10, 13});
@@ -31,7 +31,7 @@ std::vector<IndexedFaceSet> shapes() {
 }  // namespace
 
 TEST_CASE("edges of the mesh, of a vertex and beside an edge", "[walks]") {
-  for (const IndexedFaceSet& set : shapes()) {
+  for (const IndexedFaceSet& set : polygon_shapes()) {
     const HalfEdgeMesh mesh = test::half_edges(set);
     std::vector<HalfEdgeId> edges;
     mesh.for_each_edge([&](HalfEdgeId e) { edges.push_back(e); });
@@ -71,7 +71,7 @@ TEST_CASE("edges of the mesh, of a vertex and beside an edge", "[walks]") {
 }
 
 TEST_CASE("a breadth-first walk meets every face of its component at its distance", "[walks]") {
-  for (const IndexedFaceSet& set : shapes()) {
+  for (const IndexedFaceSet& set : polygon_shapes()) {
     const HalfEdgeMesh mesh = test::half_edges(set);
     // Distances by relaxing all edges until nothing changes.
     std::vector<std::size_t> distance(mesh.face_count(), mesh.face_count());
@@ -111,7 +111,7 @@ TEST_CASE("a breadth-first walk meets every face of its component at its distanc
 }
 
 TEST_CASE("components are those of the topology", "[walks]") {
-  for (const IndexedFaceSet& set : shapes()) {
+  for (const IndexedFaceSet& set : polygon_shapes()) {
     const FaceComponents parts = face_components(test::half_edges(set)).value();
     const SurfaceTopology topology = surface_topology(set).value();
     CHECK(parts.of_face == topology.component_of_face);
@@ -122,7 +122,7 @@ TEST_CASE("components are those of the topology", "[walks]") {
 }
 
 TEST_CASE("faces and half-edges are inverses", "[walks]") {
-  for (const IndexedFaceSet& set : shapes()) {
+  for (const IndexedFaceSet& set : polygon_shapes()) {
     const IndexedFaceSet back = to_indexed_face_set(test::half_edges(set), set.points).value();
     CHECK(back.points == set.points);
     CHECK(back.corners == set.corners);

@@ -13,7 +13,7 @@ using namespace vkmesh;
 
 namespace {
 
-std::vector<IndexedFaceSet> triangle_shapes() {
+std::vector<IndexedFaceSet> closed_and_open_triangles() {
   IndexedFaceSet isolated = test::grid(3, 3);
   isolated.points.emplace_back(0.0f, 0.0f, 5.0f);
   return {test::tetrahedron(), test::icosphere(2),   test::torus(6, 5),    test::grid(4, 3),
@@ -23,7 +23,7 @@ std::vector<IndexedFaceSet> triangle_shapes() {
 }  // namespace
 
 TEST_CASE("the neighbour opposite a corner shares the edge opposite it", "[triangle_neighbours]") {
-  for (const IndexedFaceSet& set : triangle_shapes()) {
+  for (const IndexedFaceSet& set : closed_and_open_triangles()) {
     const TriangleNeighbours triangles = triangle_neighbours(test::half_edges(set)).value();
     REQUIRE(triangles.corners == set.corners);
     for (std::uint32_t t = 0; t < triangles.triangle_count(); ++t)
@@ -43,7 +43,7 @@ TEST_CASE("the neighbour opposite a corner shares the edge opposite it", "[trian
 
 TEST_CASE("triangles, neighbours and edges around a vertex are those of the half-edges",
           "[triangle_neighbours]") {
-  for (const IndexedFaceSet& set : triangle_shapes()) {
+  for (const IndexedFaceSet& set : closed_and_open_triangles()) {
     const HalfEdgeMesh mesh = test::half_edges(set);
     const TriangleNeighbours triangles = triangle_neighbours(mesh).value();
     for (std::uint32_t i = 0; i < mesh.vertex_count(); ++i) {
@@ -70,7 +70,7 @@ TEST_CASE("triangles, neighbours and edges around a vertex are those of the half
 }
 
 TEST_CASE("half-edges come back from triangle neighbours", "[triangle_neighbours]") {
-  for (const IndexedFaceSet& set : triangle_shapes()) {
+  for (const IndexedFaceSet& set : closed_and_open_triangles()) {
     const HalfEdgeMesh mesh = test::half_edges(set);
     const auto back = to_half_edge_mesh(triangle_neighbours(mesh).value());
     REQUIRE(back);
