@@ -167,6 +167,10 @@ TEST_CASE("text too long is shortened at a whole character, at its beginning or 
     REQUIRE(path.ends_with(end.substr(3)));
     REQUIRE(beginning.ends_with("\xe2\x80\xa6"));
     REQUIRE(path.starts_with(beginning.substr(0, beginning.size() - 3)));
+    // One more character would not fit.
+    std::size_t more = beginning.size() - 2;
+    while (more < path.size() && !begins_character(more)) ++more;
+    REQUIRE(face.width(path.substr(0, more) + "\xe2\x80\xa6") > width);
   }
   CHECK(face.end_that_fits(path, 90).ends_with("mesh.ply"));
 }

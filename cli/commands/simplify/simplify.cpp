@@ -1,6 +1,7 @@
 // vkmesh simplify: fewer triangles, by quadric error.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -77,9 +78,10 @@ std::string how_to_free_seams(const SimplifyAttributes& attributes) {
   return options.empty() ? std::string() : "; " + joined(options) + " would free seams";
 }
 
-std::string why(DecimateStop stop, const SimplifyOptions& options, const SimplifyAttributes& attributes,
-                const CountByReason& blocked) {
-  switch (stop) {
+std::string why(const DecimationReport& report, const SimplifyOptions& options,
+                const SimplifyAttributes& attributes) {
+  const CountByReason& blocked = report.blocked;
+  switch (report.stop) {
     case DecimateStop::kTargetReached:
       return "the target was reached";
     case DecimateStop::kErrorBound:
@@ -88,7 +90,8 @@ std::string why(DecimateStop stop, const SimplifyOptions& options, const Simplif
                             : brief(100 * options.relative_error.value_or(0)) + " % of the diagonal") +
              " holds what is left: " + describe(blocked);
     case DecimateStop::kTimeLimit:
-      return "the time was up";
+      return report.collapses > 0 ? "the time was up"
+                                  : "the time was up before the first collapse: OUT is the surface of IN";
     case DecimateStop::kOutOfProportion:
       return "the target is out of reach, and more would take the shape of all that may go (--force-target "
              "goes "
@@ -189,6 +192,7 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   use_host(job);
   VKMESH_CHECK(job.check_output());
   VKMESH_TRY(IndexedFaceSet mesh, job.read());
+  const auto read = std::chrono::steady_clock::now();
   if (mesh.face_count() == 0)
     return fail(ErrorCode::kUnsuitable, "a point cloud has no faces to simplify",
                 {job.options().input, {}, {}});
@@ -227,6 +231,10 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
 
   const std::size_t faces = half_edges.face_count();
   const std::vector<std::uint32_t> isolated = isolated_points(half_edges, points.size());
+  if (options.time_limit) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - read;
+    decimation.target.seconds = std::max(0.0, *options.time_limit - passed.count());
+  }
   VKMESH_TRY(Decimated decimated, job.timed("compute", [&] {
     return decimate(half_edges, points, decimation, job.progress("simplifying"));
   }));
@@ -281,7 +289,7 @@ Result<void> run(Job& job, const SimplifyOptions& options, const SimplifyCriteri
   if (!isolated.empty())
     job.row("isolated",
             count_of(isolated.size(), "point") + " that no face uses kept (--drop-isolated leaves them out)");
-  job.row("stopped", why(decimated.stop, options, attributes, decimated.blocked));
+  job.row("stopped", why(decimated, options, attributes));
   job.row("collapses",
           grouped(decimated.collapses) + " done; refused " +
               grouped(decimated.rejected[Reason::kLinkCondition]) + " that would break the manifold, " +
@@ -383,7 +391,10 @@ void add_simplify(CLI::App& app, Program& program) {
                        "Do no collapse of a larger error, as a share of the bounding box's diagonal")
           ->type_name("E")
           ->check(number_between(0, std::numeric_limits<double>::max()));
-  command->add_option("--time-limit", options->time_limit, "Stop after this many seconds of simplifying")
+  command
+      ->add_option("--time-limit", options->time_limit,
+                   "Stop so many seconds after IN has been read; making OUT takes some more. Where they\n"
+                   "pass before the first collapse, OUT is the surface of IN")
       ->type_name("S")
       ->check(number_between(0, std::numeric_limits<double>::max()));
   command

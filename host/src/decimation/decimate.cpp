@@ -1,6 +1,5 @@
 // The stages of a decimation: check, prepare, coarsen, collapse or remove, gather. `reference.cpp` says what
 // all of it comes to.
-#include <chrono>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -16,10 +15,13 @@
 #include "decimation/removals.h"
 #include "decimation/setup/build_mesh.h"
 #include "decimation/setup/check_options.h"
+#include "decimation/setup/held_vertices.h"
 #include "decimation/setup/initial_quadrics.h"
 #include "decimation/setup/packed_attributes.h"
 #include "decimation/setup/prepare.h"
 #include "decimation/setup/prune.h"
+#include "decimation/unchanged_result.h"
+#include "mesh/edge_matching.h"
 
 namespace vkmesh {
 namespace {
@@ -27,39 +29,78 @@ namespace {
 using namespace detail;
 
 template <class Point>
-Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
-                                              std::span<const std::uint32_t> corners,
-                                              const DecimateOptions& given, const PartitionSizes& sizes,
-                                              const Progress& progress) {
-  const auto begun = std::chrono::steady_clock::now();
-  VKMESH_CHECK(check_options(given, points.size(), corners.size()));
-  const PackedAttributes packed(given);
-  const DecimateOptions& options = packed.options();
+Result<BasicDecimated<Point>> decimate_until(Stop& stop, std::span<const Point> points,
+                                             std::span<const std::uint32_t> corners,
+                                             const DecimateOptions& options, const PartitionSizes& sizes);
 
+/// The vertices that are left of a part of the surface when all has gone that may, apart from the rest and
+/// from attributes; those locked before stay.
+template <class Point>
+Result<std::size_t> left_of_part(const CollapseMesh& mesh, std::span<const Point> points, const Frame& frame,
+                                 const DecimateOptions& options, const Part& part,
+                                 const PartitionSizes& sizes) {
+  DecimateOptions alone;
+  alone.operation = options.operation;
+  alone.weights = options.weights;
+  alone.bounds = options.bounds;
+  alone.curves = options.curves;
+  alone.bounds.report_distance = false;
+  for (std::optional<Length>* bound :
+       {&alone.bounds.error, &alone.bounds.distance, &alone.bounds.edge_length})
+    if (*bound) *bound = Length::absolute((*bound)->in_units(frame.diagonal));
+  std::vector<Point> places;
+  for (std::uint32_t i = 0; i < part.vertices.size(); ++i) {
+    const VertexRecord& vertex = mesh.vertices[part.vertices[i]];
+    places.push_back(points[vertex.source & VertexRecord::kSourceMask]);
+    if (vertex.has(VertexRecord::kLocked)) alone.locked.vertices.push_back(i);
+  }
+  const Progress silent;
+  Stop never(silent, Stop::Clock::now(), std::numeric_limits<double>::infinity());
+  VKMESH_TRY(const BasicDecimated<Point> left,
+             decimate_until<Point>(never, places, part.corners, alone, sizes));
+  return left.positions.size();
+}
+
+/// Until something has been removed, a time that is over ends it with kInterrupted.
+template <class Point>
+Result<BasicDecimated<Point>> decimate_until(Stop& stop, std::span<const Point> points,
+                                             std::span<const std::uint32_t> corners,
+                                             const DecimateOptions& options, const PartitionSizes& sizes) {
   // Prepare
-  Stop stop(progress, begun, options.target.seconds.value_or(std::numeric_limits<double>::infinity()));
-  VKMESH_TRY(BuiltMesh built, build_mesh(points, corners));
-  VKMESH_CHECK(stop.check());
+  VKMESH_CHECK(stop.go_on());
+  VKMESH_TRY(BuiltMesh built, build_mesh(points, corners, stop));
   CollapseMesh& mesh = built.mesh;
   const Frame& frame = built.frame;
   lock_vertices(mesh, corners, options);
-  std::optional<Wedges> wedges = find_wedges(mesh, points.size(), options);
-  if (!stop.is_set() || wedges) sum_quadrics(mesh, constraint_weights(options.curves, wedges));
-  VKMESH_CHECK(stop.check());
+  std::optional<Wedges> wedges = find_wedges(mesh, points.size(), options, stop);
+  VKMESH_CHECK(stop.go_on());
+  sum_quadrics(mesh, constraint_weights(options.curves, wedges), &stop);
+  VKMESH_CHECK(stop.go_on());
   std::optional<AttributeQuadrics> attributes;
   if (wedges)
     attributes.emplace(mesh, points.size(), std::move(*wedges), options.attributes, corners,
-                       frame.diagonal * frame.scale, options.operation == DecimateOperation::kVertexRemoval);
+                       frame.diagonal * frame.scale, options.operation == DecimateOperation::kVertexRemoval,
+                       stop);
+  VKMESH_CHECK(stop.go_on());
   if (attributes && options.keep_history) attributes->keep_changes();
   Pruned pruned;
-  if (options.prune_size)
-    pruned = prune_components(mesh,
-                              static_cast<float>(frame.scale * options.prune_size->in_units(frame.diagonal)));
+  if (options.prune_size) {
+    const double size = frame.scale * options.prune_size->in_units(frame.diagonal);
+    VKMESH_TRY(pruned, prune_components(mesh, static_cast<float>(size), stop));
+  }
   Criteria criteria(options.weights, options.bounds, frame, mesh);
   Limits limits = limits_of(options, mesh.face_count(), frame);
   const std::size_t faces = mesh.face_count() - pruned.faces,
                     vertices = built.used_vertices - pruned.vertices;
-  keep_in_proportion(limits, mesh, options, faces, vertices);
+  if (const double share = share_asked_for(limits, faces, vertices); share > 0 && !options.target.force) {
+    const auto left_alone = [&](const Part& part) {
+      return left_of_part(mesh, points, frame, options, part, sizes);
+    };
+    VKMESH_TRY(const std::size_t held,
+               held_vertices(mesh, options, faces, vertices, share * static_cast<double>(vertices),
+                             left_alone, stop));
+    keep_in_proportion(limits, share, vertices, held);
+  }
   DecimationState state{.mesh = mesh,
                         .limits = limits,
                         .faces = faces,
@@ -71,21 +112,40 @@ Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
                         .mean_weight = mean_weight_of(mesh),
                         .sizes = sizes,
                         .stop = &stop};
-  VKMESH_CHECK(stop.check());
+  VKMESH_CHECK(stop.go_on());
 
   // Coarsen; collapse or remove
-  if (!stop.is_set()) coarsen_if_far_from_target(state);
+  coarsen_if_far_from_target(state);
   const auto remove = attributes ? remove_cheapest<true> : remove_cheapest<false>;
   VKMESH_TRY(Outcome outcome, remove(state, options.operation));
+  if (outcome.stop == DecimateStop::kTimeLimit && outcome.collapses == 0) VKMESH_CHECK(stop.go_on());
 
   // Gather
-  BasicDecimated<Point> result = gather(mesh, points, built.is_in_order, frame, outcome, state.attributes);
+  VKMESH_TRY(BasicDecimated<Point> result,
+             gather(mesh, points, built.is_in_order, frame, outcome, state.attributes, stop));
   if (attributes) result.changes = attributes->take_changes();
   result.changes.faces = std::move(outcome.changed_faces);
   if (criteria.watches_distance()) result.distance_bound = criteria.distance(mesh) / frame.scale;
   result.pruned_components = pruned.components;
   result.pruned_faces = pruned.faces;
   return result;
+}
+
+/// `half_edges()`: those of the surface.
+template <class Point, class HalfEdges>
+Result<BasicDecimated<Point>> decimate_arrays(std::span<const Point> points,
+                                              std::span<const std::uint32_t> corners,
+                                              const DecimateOptions& given, const PartitionSizes& sizes,
+                                              const Progress& progress, Stop::Now now,
+                                              HalfEdges&& half_edges) {
+  VKMESH_CHECK(check_options(given, points.size(), corners.size()));
+  Stop stop(progress, now(), given.target.seconds.value_or(std::numeric_limits<double>::infinity()), now);
+  const PackedAttributes packed(given);
+  auto result = decimate_until(stop, points, corners, packed.options(), sizes);
+  if (result || result.error().code != ErrorCode::kInterrupted || stop.is_cancelled()) return result;
+  VKMESH_TRY(HalfEdgeMesh mesh, half_edges());
+  VKMESH_CHECK(stop.check());
+  return unchanged(std::move(mesh), points, packed.options());
 }
 
 template <class Point>
@@ -95,8 +155,10 @@ Result<BasicDecimated<Point>> decimate_mesh(const HalfEdgeMesh& mesh, std::span<
     return fail(ErrorCode::kUnsuitable, "decimation takes triangles only: triangulate first");
   if (positions.size() != mesh.vertex_count())
     return fail(ErrorCode::kUsage, "decimation needs one position for each vertex");
-  return catching(
-      [&] { return decimate_arrays(positions, mesh.origins(), options, PartitionSizes{}, progress); });
+  return catching([&] {
+    return decimate_arrays(positions, mesh.origins(), options, PartitionSizes{}, progress, &Stop::Clock::now,
+                           [&]() -> Result<HalfEdgeMesh> { return mesh; });
+  });
 }
 
 }  // namespace
@@ -134,8 +196,16 @@ Result<Decimated> decimate(const TriangleSurface& surface, const DecimateOptions
 
 Result<Decimated> detail::decimate_in_partitions(const TriangleSurface& surface,
                                                  const DecimateOptions& options, const PartitionSizes& sizes,
-                                                 const Progress& progress) {
-  return catching([&] { return decimate_arrays(surface.points, surface.corners, options, sizes, progress); });
+                                                 const Progress& progress, Stop::Now now) {
+  const auto half_edges = [&]() -> Result<HalfEdgeMesh> {
+    VKMESH_TRY(Matching matching, match_edges(surface.points.size(), surface.corners, {}));
+    if (!matching.defects.none()) return fail(ErrorCode::kUnsuitable, kNoManifold);
+    return HalfEdgeMesh::from_arrays({surface.corners.begin(), surface.corners.end()},
+                                     std::move(matching.twin), std::move(matching.leading));
+  };
+  return catching([&] {
+    return decimate_arrays(surface.points, surface.corners, options, sizes, progress, now, half_edges);
+  });
 }
 
 }  // namespace vkmesh

@@ -129,10 +129,11 @@ class PartitionState {
   return static_cast<std::size_t>((std::uint64_t{i * 0x9e3779b1u} * all) >> 32);
 }
 
-/// As `decimate`; for tests, in partitions so small that any surface has several.
+/// As `decimate`; for tests, in partitions so small that any surface has several, and by another clock.
 [[nodiscard]] Result<Decimated> decimate_in_partitions(
     const TriangleSurface& surface, const DecimateOptions& options,
-    const PartitionSizes& sizes = {.partition_faces = 32, .range_faces = 512}, const Progress& progress = {});
+    const PartitionSizes& sizes = {.partition_faces = 32, .range_faces = 512}, const Progress& progress = {},
+    Stop::Now now = &Stop::Clock::now);
 
 constexpr std::size_t kRemovalsBetweenReports = 8192;
 

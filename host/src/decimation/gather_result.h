@@ -12,12 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include <vkmesh/base/result.h>
 #include <vkmesh/decimation/decimate.h>
 #include <vkmesh/mesh/handles.h>
 
 #include "base/parallel.h"
 #include "base/parallel_filter.h"
 #include "base/prefetch.h"
+#include "base/stop.h"
 #include "decimation/cost/attribute_quadrics.h"
 #include "decimation/decimation_state.h"
 #include "decimation/setup/frame.h"
@@ -25,10 +27,11 @@
 
 namespace vkmesh::detail {
 
+/// O(n). Errors: kInterrupted where the caller wants it; what has been done within a time is gathered.
 template <class Point>
-BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> points, bool in_order,
-                             const Frame& frame, const Outcome& outcome,
-                             const AttributeQuadrics* attributes) {
+Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const Point> points, bool in_order,
+                                     const Frame& frame, const Outcome& outcome,
+                                     const AttributeQuadrics* attributes, Stop& stop) {
   BasicDecimated<Point> result;
   result.stop = outcome.stop;
   result.collapses = outcome.collapses;
@@ -42,6 +45,8 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
   for (const Event& e : outcome.events)
     result.history.push_back(
         {e.kept, e.removed, e.moved ? point_of<Point>(e.position, frame) : points[e.kept], e.faces});
+
+  VKMESH_CHECK(stop.check());
 
   // Vertices and faces in the order of the input. The records are read once; what follows is in small arrays.
   const auto& vertices = mesh.vertices;
@@ -73,6 +78,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     return vertex.alive();
   });
   result.source_vertex = in_input_order(alive, n, source_of);
+  VKMESH_CHECK(stop.check());
   // Each looks at others that another thread may be changing: all come to the same end.
   const auto follow = [&](std::size_t begin, std::size_t end) {
     std::uint32_t change = 0;
@@ -94,6 +100,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     for (std::size_t v = begin; v < end; ++v) result.vertex_map[v] = new_vertex[by[v]];
   });
   by = std::vector<std::uint32_t>();
+  VKMESH_CHECK(stop.check());
   result.positions.resize(alive.size());
   for (const std::uint32_t v : alive) {
     const VertexRecord& vertex = vertices[v];
@@ -101,17 +108,20 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
     result.positions[new_vertex[source]] =
         vertex.has(VertexRecord::kMoved) ? point_of<Point>(vertex.position, frame) : points[source];
   }
+  VKMESH_CHECK(stop.check());
 
   const std::vector<std::uint32_t> alive_faces = collect(mesh.face_count(), [&](std::uint32_t f) {
     prefetch_stream(&mesh.face(4 * f));
     return mesh.alive(4 * f);
   });
   result.source_face = in_input_order(alive_faces, mesh.face_count(), source_of_face);
+  VKMESH_CHECK(stop.check());
   const auto new_face_of =
       std::make_unique_for_overwrite<std::uint32_t[]>(mesh.face_count());  // of those alive
   const std::span new_face(new_face_of.get(), mesh.face_count());
   for (std::uint32_t i = 0; i < result.source_face.size(); ++i) new_face[result.source_face[i]] = i;
   if (attributes != nullptr) result.attributes = attributes->gather(alive_faces, new_face);
+  VKMESH_CHECK(stop.check());
   std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size());
   parallel_ranges(alive_faces.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kAhead = 16;
@@ -125,6 +135,7 @@ BasicDecimated<Point> gather(const CollapseMesh& mesh, std::span<const Point> po
       }
     }
   });
+  VKMESH_CHECK(stop.check());
   result.mesh = HalfEdgeMesh::from_twins(std::move(origin), std::move(twin), result.positions.size());
   return result;
 }

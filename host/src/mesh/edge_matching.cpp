@@ -175,7 +175,8 @@ std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span
 }
 
 Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
-                             std::span<const std::uint32_t> face_offsets) {
+                             std::span<const std::uint32_t> face_offsets, Stop* stop) {
+  const auto go_on = [&]() -> Result<void> { return stop == nullptr ? Result<void>{} : stop->go_on(); };
   VKMESH_CHECK(check_face_set(point_count, corners, face_offsets));
   const std::size_t face_count = face_offsets.empty() ? corners.size() / 3 : face_offsets.size() - 1;
   const auto face = [&](std::size_t f) {
@@ -189,11 +190,13 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
 
   const auto degenerate = parallel_sum<Defect>(face_count, kGrain, [&](std::size_t first, std::size_t last) {
     Defect defect;
+    if (!goes_on(stop)) return defect;
     for (std::size_t f = first; f < last; ++f)
       if (is_degenerate(face(f))) defect.add([&] { return "face " + std::to_string(f); });
     return defect;
   });
 
+  VKMESH_CHECK(go_on());
   // Degenerate faces have no part in the surface: the edges are those of the others.
   const std::span<const std::uint32_t> all_corners = corners;
   std::vector<std::uint32_t> sound_corners, sound_offsets = {0};
@@ -211,11 +214,14 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
   matching.twin.assign(corners.size(), kInvalid);
   EdgeCounts edges;
   {
-    EdgeRecords records = distribute_edges(point_count, corners, face_offsets, sound_faces);
+    EdgeRecords records = distribute_edges(point_count, corners, face_offsets, sound_faces, stop);
+    VKMESH_CHECK(go_on());
     edges = parallel_sum<EdgeCounts>(point_count, kGrain, [&](std::size_t first, std::size_t last) {
+      if (!goes_on(stop)) return EdgeCounts{};
       return pair_edges(records, corners, first, last, matching.twin);
     });
   }
+  VKMESH_CHECK(go_on());
 
   complete(matching, point_count, all_corners, corners, face_offsets, degenerate, edges);
   return matching;
@@ -223,10 +229,10 @@ Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint3
 
 Result<Matching> match_merged_edges(Matching before, std::span<const std::uint32_t> point_of,
                                     std::size_t point_count, std::span<const std::uint32_t> corners,
-                                    std::span<const std::uint32_t> face_offsets) {
+                                    std::span<const std::uint32_t> face_offsets, Stop* stop) {
   const EdgeDefects& defects = before.defects;
   if (defects.degenerate_faces + defects.non_manifold_edges + defects.misoriented_edges > 0)
-    return match_edges(point_count, corners, face_offsets);
+    return match_edges(point_count, corners, face_offsets, stop);
   std::vector<std::uint8_t> merged(point_count, 0), met(point_count, 0);
   for (const std::uint32_t p : point_of) merged[p] = std::exchange(met[p], 1);
 
@@ -241,7 +247,7 @@ Result<Matching> match_merged_edges(Matching before, std::span<const std::uint32
         face_offsets.empty() ? corners.subspan(3 * f, 3)
                              : corners.subspan(face_offsets[f], face_offsets[f + 1] - face_offsets[f]);
     if (std::none_of(face.begin(), face.end(), [&](std::uint32_t p) { return merged[p] != 0; })) continue;
-    if (is_degenerate(face)) return match_edges(point_count, corners, face_offsets);
+    if (is_degenerate(face)) return match_edges(point_count, corners, face_offsets, stop);
     for_each_edge(corners, face_offsets, f, f + 1, [&](std::uint32_t h, std::uint32_t a, std::uint32_t b) {
       if (merged[a] == 0 && merged[b] == 0) return;
       uses.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), h});

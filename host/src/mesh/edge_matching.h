@@ -9,6 +9,8 @@
 
 #include <vkmesh/base/result.h>
 
+#include "base/stop.h"
+
 namespace vkmesh::detail {
 
 /// Counts of the elements of a face set, and of those that keep it from being an oriented manifold.
@@ -45,15 +47,15 @@ std::vector<std::uint32_t> leading_half_edges(std::size_t point_count, std::span
 
 /// Corners as in IndexedFaceSet. O(points + corners) apart from the small sorts within one point.
 /// Errors: kUsage for corners that name no point or offsets that do not ascend; kUnsuitable for more than
-/// 2^32 - 2 corners or points.
+/// 2^32 - 2 corners or points; kInterrupted where `stop` is set meanwhile.
 Result<Matching> match_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
-                             std::span<const std::uint32_t> face_offsets);
+                             std::span<const std::uint32_t> face_offsets, Stop* stop = nullptr);
 
 /// What match_edges() gives for the same faces after points were made one; `before` is what it gave before,
 /// and `point_of` the new number of each point. Only the edges of merged points are sorted, unless faces or
 /// edges have defects. Errors: as match_edges().
 Result<Matching> match_merged_edges(Matching before, std::span<const std::uint32_t> point_of,
                                     std::size_t point_count, std::span<const std::uint32_t> corners,
-                                    std::span<const std::uint32_t> face_offsets);
+                                    std::span<const std::uint32_t> face_offsets, Stop* stop = nullptr);
 
 }  // namespace vkmesh::detail

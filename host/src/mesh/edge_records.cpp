@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/stop.h"
 
 namespace vkmesh::detail {
 
@@ -73,15 +74,19 @@ void EdgeRecords::sort_records(std::span<std::uint64_t> records) {
 // Two blocks of faces count and place at once, the second behind the first within each point; more would cost
 // more memory than they save time.
 EdgeRecords distribute_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
-                             std::span<const std::uint32_t> face_offsets, std::size_t face_count) {
-  constexpr std::size_t kBlocks = 2;
+                             std::span<const std::uint32_t> face_offsets, std::size_t face_count,
+                             Stop* stop) {
+  constexpr std::size_t kBlocks = 2, kBetween = std::size_t{1} << 15;  // faces from one question to the next
   EdgeRecords result{std::vector<std::uint64_t>(corners.size()), std::vector<std::uint32_t>(point_count)};
   std::array<std::vector<std::uint32_t>, kBlocks> slots;
   const auto for_each_block = [&](auto&& body) {
     parallel_ranges(kBlocks, 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t b = first; b < last; ++b)
-        for_each_edge(corners, face_offsets, face_count * b / kBlocks, face_count * (b + 1) / kBlocks,
-                      body(b));
+      for (std::size_t b = first; b < last; ++b) {
+        const std::size_t end = face_count * (b + 1) / kBlocks;
+        auto visit = body(b);
+        for (std::size_t f = face_count * b / kBlocks; f < end && goes_on(stop); f += kBetween)
+          for_each_edge(corners, face_offsets, f, std::min(f + kBetween, end), visit);
+      }
     });
   };
   for_each_block([&](std::size_t b) {
@@ -90,6 +95,7 @@ EdgeRecords distribute_edges(std::size_t point_count, std::span<const std::uint3
       ++slot[std::min(from, to)];
     };
   });
+  if (!goes_on(stop)) return result;
   std::uint32_t placed = 0;
   for (std::size_t a = 0; a < point_count; ++a) {
     for (std::vector<std::uint32_t>& slot : slots) placed += std::exchange(slot[a], placed);

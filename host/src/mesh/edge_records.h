@@ -11,6 +11,8 @@
 #include <vkmesh/mesh/handles.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 
+#include "base/stop.h"
+
 namespace vkmesh::detail {
 
 /// Errors: kUsage for corners that name no point or offsets that do not ascend from 0 to the number of
@@ -88,9 +90,10 @@ struct EdgeRecords {
   static void sort_records(std::span<std::uint64_t> records);
 };
 
-/// Files the edges of all faces under their smaller points (a counting sort). O(points + corners).
+/// Files the edges of all faces under their smaller points (a counting sort). O(points + corners). Where
+/// `stop` is set meanwhile they are of no use.
 [[nodiscard]] EdgeRecords distribute_edges(std::size_t point_count, std::span<const std::uint32_t> corners,
                                            std::span<const std::uint32_t> face_offsets,
-                                           std::size_t face_count);
+                                           std::size_t face_count, Stop* stop = nullptr);
 
 }  // namespace vkmesh::detail

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <vkmesh/repair/consolidate.h>
 
 #include "base/disjoint_sets.h"
+#include "base/stop.h"
 #include "mesh/edge_matching.h"
 #include "mesh/edge_records.h"
 #include "repair/repair.h"
@@ -124,30 +126,33 @@ void name_before_welding(std::vector<std::uint32_t>& source_point, const std::ve
     for (std::uint32_t& p : source_point) p = first[p];
 }
 
-Result<detail::Matching> match(const IndexedFaceSet& mesh) {
-  return detail::match_edges(mesh.points.size(), mesh.corners, mesh.face_offsets);
+Result<detail::Matching> match(const IndexedFaceSet& mesh, detail::Stop* stop = nullptr) {
+  return detail::match_edges(mesh.points.size(), mesh.corners, mesh.face_offsets, stop);
 }
 
 Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options, const Progress& progress) {
+  detail::Stop stop(progress, detail::Stop::Clock::now(), std::numeric_limits<double>::infinity());
   const auto tick = [&](double done) -> Result<void> {
-    if (!progress || progress(done)) return {};
+    stop.report(done);
+    if (!stop.is_cancelled()) return {};
     return fail(ErrorCode::kInterrupted, "consolidation was interrupted");
   };
   VKMESH_CHECK(tick(0));
   Consolidated result;
   Welded welded;
   if (options.weld) {
-    VKMESH_TRY(welded, weld(mesh, *options.weld));
+    VKMESH_TRY(welded, detail::weld(mesh, *options.weld, &stop));
     mesh = std::move(welded.mesh);
     VKMESH_CHECK(tick(0.05));
   }
-  VKMESH_TRY(detail::Matching matching, match(mesh));
+  VKMESH_TRY(detail::Matching matching, match(mesh, &stop));
   if (options.weld_boundary && !options.weld && matching.defects.boundary_edges > 0) {
-    VKMESH_TRY(welded, detail::weld_boundary(mesh, matching.twin));
+    VKMESH_TRY(welded, detail::weld_boundary(mesh, matching.twin, &stop));
     if (welded.merged_points > 0) {
       mesh = std::move(welded.mesh);
-      VKMESH_TRY(matching, detail::match_merged_edges(std::move(matching), welded.point_of,
-                                                      mesh.points.size(), mesh.corners, mesh.face_offsets));
+      VKMESH_TRY(matching,
+                 detail::match_merged_edges(std::move(matching), welded.point_of, mesh.points.size(),
+                                            mesh.corners, mesh.face_offsets, &stop));
     }
   }
   VKMESH_CHECK(tick(0.1));
@@ -162,7 +167,7 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
   } else if (options.strict) {
     return not_manifold(report.defects);
   } else {
-    VKMESH_TRY(detail::Repaired repaired, detail::repair(mesh, options.cut_non_orientable, report, progress));
+    VKMESH_TRY(detail::Repaired repaired, detail::repair(mesh, options.cut_non_orientable, report, stop));
     mesh = {};
     result.face_set = std::move(repaired.mesh);
     result.source_point = std::move(repaired.source_point);
@@ -176,13 +181,13 @@ Result<Consolidated> run(IndexedFaceSet mesh, const ConsolidateOptions& options,
         if (!back[f]) continue;
         report.flipped_faces += repaired.flipped[f] ? std::size_t(-1) : std::size_t{1};
       }
-      VKMESH_TRY(matching, match(result.face_set));
+      VKMESH_TRY(matching, match(result.face_set, &stop));
     }
   }
   if (!options.keep_isolated_points) {
     drop_isolated_points(result);
     if (report.removed_points > 0) {
-      VKMESH_TRY(matching, match(result.face_set));
+      VKMESH_TRY(matching, match(result.face_set, &stop));
     }
   }
   if (report.welded_points > 0) name_before_welding(result.source_point, welded.point_of, report.points);

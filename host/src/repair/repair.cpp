@@ -24,7 +24,8 @@ namespace {
 
 class Repair {
  public:
-  Repair(const IndexedFaceSet& input, ConsolidateReport& report) : input_(input), report_(report) {
+  Repair(const IndexedFaceSet& input, ConsolidateReport& report, Stop& stop)
+      : input_(input), report_(report), stop_(stop) {
     mesh_.points = input.points;
     mesh_.face_offsets = {0};
   }
@@ -270,8 +271,8 @@ class Repair {
     for (std::size_t f = 0; f < source_face_.size(); ++f) triangles = triangles && mesh_.face(f).size() == 3;
     // Triangles without offsets: the faces of corners need not be looked up.
     const std::span<const std::uint32_t> offsets = mesh_.face_offsets;
-    VKMESH_TRY(matching_,
-               match_edges(mesh_.points.size(), mesh_.corners, triangles ? offsets.first(0) : offsets));
+    VKMESH_TRY(matching_, match_edges(mesh_.points.size(), mesh_.corners,
+                                      triangles ? offsets.first(0) : offsets, &stop_));
     return matching_.defects.none();
   }
 
@@ -448,6 +449,7 @@ class Repair {
 
   const IndexedFaceSet& input_;
   ConsolidateReport& report_;
+  Stop& stop_;
   IndexedFaceSet mesh_;  ///< Offsets are kept for triangles as well, until the end.
   std::vector<std::uint32_t> source_point_, source_corner_, source_face_;
   std::vector<std::uint32_t> face_of_;  ///< The face of each corner.
@@ -465,12 +467,12 @@ class Repair {
 }  // namespace
 
 Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable, ConsolidateReport& report,
-                        const Progress& progress) {
+                        Stop& stop) {
   const auto tick = [&](double done) -> Result<void> {
-    if (!progress || progress(done)) return {};
-    return fail(ErrorCode::kInterrupted, "consolidation was interrupted");
+    stop.report(done);
+    return stop.check();
   };
-  Repair steps(mesh, report);
+  Repair steps(mesh, report, stop);
   steps.take_faces();
   VKMESH_CHECK(tick(0.2));
   // Most meshes that need repairing at all have a few degenerate faces, and that is all.

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/repair/consolidate.h>
 
+#include "base/stop.h"
 #include "mesh/edge_matching.h"
 
 namespace vkmesh::detail {
@@ -24,6 +24,6 @@ struct Repaired {
 /// Steps 2 to 5 of consolidate(): the result is an oriented manifold. Counts in `report` what it does.
 /// Errors: kUnsuitable for a surface that is not orientable and not to be cut; kInterrupted.
 [[nodiscard]] Result<Repaired> repair(const IndexedFaceSet& mesh, bool cut_non_orientable,
-                                      ConsolidateReport& report, const Progress& progress);
+                                      ConsolidateReport& report, Stop& stop);
 
 }  // namespace vkmesh::detail

@@ -37,8 +37,10 @@ class NearPoints {
   NearPoints(std::span<const Vec3> points, double tolerance, detail::DisjointSets& sets)
       : points_(points), tolerance_(tolerance), sets_(sets), cells_(cells_of(points, tolerance)) {}
 
-  void unite() {
+  /// Errors: kInterrupted.
+  Result<void> unite(detail::Stop* stop) {
     for (std::size_t c = 0; c < cells_.points.cell_count(); ++c) {
+      if (stop != nullptr && c % kBetween == 0) VKMESH_CHECK(stop->go_on());
       if (cells_.within_tolerance)
         for (std::size_t i = first(c) + 1; i < last(c); ++i) sets_.unite(point(first(c)), point(i));
       else
@@ -47,12 +49,14 @@ class NearPoints {
     // Half of the neighbours: the other half sees this cell.
     for (std::uint32_t dx = 0; dx <= kReach; ++dx)
       for (std::uint32_t dy = 0; dy <= 2 * kReach; ++dy)
-        if (dx > 0 || dy >= kReach) sweep(dx, dy);
+        if (dx > 0 || dy >= kReach) VKMESH_CHECK(sweep(dx, dy, stop));
+    return {};
   }
 
  private:
   /// Cells further apart than this along an axis are further apart than the tolerance.
   static constexpr std::uint32_t kReach = 2;
+  static constexpr std::size_t kBetween = std::size_t{1} << 14;  // cells from one question to the next
   using Cell = std::array<std::uint32_t, 3>;
   struct Cells {
     detail::PointsByCell<Cell> points;
@@ -83,10 +87,11 @@ class NearPoints {
 
   /// Compares each cell with those of one column of neighbours: (x + dx, y + dy - kReach, z ± kReach). The
   /// columns ascend as the cells do, so that the place in the list only moves forward.
-  void sweep(std::uint32_t dx, std::uint32_t dy) {
+  Result<void> sweep(std::uint32_t dx, std::uint32_t dy, detail::Stop* stop) {
     const std::size_t cells = cells_.points.cell_count();
     std::size_t from = 0;
     for (std::size_t c = 0; c < cells; ++c) {
+      if (stop != nullptr && c % kBetween == 0) VKMESH_CHECK(stop->go_on());
       const Cell& here = cells_.points.key_of_cell(c);
       const Cell least = {here[0] + dx, here[1] + dy - kReach, here[2] - kReach};
       const Cell greatest = {least[0], least[1], here[2] + kReach};
@@ -94,6 +99,7 @@ class NearPoints {
       for (std::size_t n = from; n < cells && cells_.points.key_of_cell(n) <= greatest; ++n)
         if (n > c) compare(c, n);
     }
+    return {};
   }
 
   void compare(std::size_t c, std::size_t n) {
@@ -116,10 +122,11 @@ class NearPoints {
 };
 
 /// The numbers of distinct points, each the place of its set's lowest point.
-std::vector<Vec3> move_together(const std::vector<Vec3>& distinct, double tolerance, double& largest_move) {
+Result<std::vector<Vec3>> move_together(const std::vector<Vec3>& distinct, double tolerance,
+                                        double& largest_move, detail::Stop* stop) {
   std::vector<Vec3> moved = distinct;
   detail::DisjointSets sets(distinct.size());
-  NearPoints(distinct, tolerance, sets).unite();
+  VKMESH_CHECK(NearPoints(distinct, tolerance, sets).unite(stop));
   for (std::uint32_t p = 0; p < distinct.size(); ++p) {
     Vec3& lowest = moved[sets.find(p)];
     if (before(distinct[p], lowest)) lowest = distinct[p];
@@ -159,14 +166,17 @@ std::vector<bool> on_boundary(const IndexedFaceSet& mesh, std::span<const std::u
   return found;
 }
 
-/// Gives points at equal places one number; `apart(p)` says that a point keeps one of its own.
+/// Gives points at equal places one number; `apart(p)` says that a point keeps one of its own. Errors:
+/// kInterrupted.
 template <class Apart>
-std::vector<std::uint32_t> number_places(std::span<const Vec3> points, std::vector<Vec3>& distinct,
-                                         Apart&& apart) {
+Result<std::vector<std::uint32_t>> number_places(std::span<const Vec3> points, std::vector<Vec3>& distinct,
+                                                 Apart&& apart, detail::Stop* stop) {
+  constexpr std::size_t kBetween = std::size_t{1} << 14;  // points from one question to the next
   std::vector<std::uint32_t> point_of(points.size()), number_of_row;
   std::vector<Vec3> rows;
   detail::DistinctRows<3> places;
   for (std::size_t p = 0; p < points.size(); ++p) {
+    if (stop != nullptr && p % kBetween == 0) VKMESH_CHECK(stop->go_on());
     const auto next = static_cast<std::uint32_t>(distinct.size());
     point_of[p] = next;
     if (!apart(p)) {
@@ -222,19 +232,19 @@ Welded merge(const IndexedFaceSet& mesh, std::vector<std::uint32_t> point_of, st
   return result;
 }
 
-Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& options) {
+Result<Welded> weld_points(const IndexedFaceSet& mesh, const WeldOptions& options, detail::Stop* stop) {
   if (!(options.tolerance.value >= 0) || !std::isfinite(options.tolerance.value))
     return fail(ErrorCode::kUsage, "the tolerance of welding must be a finite number that is not negative");
   VKMESH_CHECK(check_points(mesh));
   const double tolerance = options.tolerance.in_units(bounds_of(mesh.points).diagonal());
   const auto none = [](std::size_t) { return false; };
   std::vector<Vec3> distinct;
-  std::vector<std::uint32_t> point_of = number_places(mesh.points, distinct, none);
+  VKMESH_TRY(std::vector<std::uint32_t> point_of, number_places(mesh.points, distinct, none, stop));
   double largest_move = 0;
   if (tolerance > 0 && !distinct.empty()) {
-    const std::vector<Vec3> moved = move_together(distinct, tolerance, largest_move);
+    VKMESH_TRY(const std::vector<Vec3> moved, move_together(distinct, tolerance, largest_move, stop));
     distinct.clear();
-    const std::vector<std::uint32_t> number = number_places(moved, distinct, none);
+    VKMESH_TRY(const std::vector<std::uint32_t> number, number_places(moved, distinct, none, stop));
     for (std::uint32_t& p : point_of) p = number[p];
   }
   Welded result = merge(mesh, std::move(point_of), std::move(distinct));
@@ -346,20 +356,25 @@ Result<IndexedFaceSet> split(IndexedFaceSet mesh, std::span<const std::string> n
 
 }  // namespace
 
-Result<Welded> detail::weld_boundary(const IndexedFaceSet& mesh, std::span<const std::uint32_t> twin) {
+Result<Welded> detail::weld_boundary(const IndexedFaceSet& mesh, std::span<const std::uint32_t> twin,
+                                     Stop* stop) {
   return catching([&]() -> Result<Welded> {
     VKMESH_CHECK(check_points(mesh));
     std::vector<bool> joins;
     if (twin.size() == mesh.corners.size()) joins = on_boundary(mesh, twin);
     std::vector<Vec3> distinct;
-    std::vector<std::uint32_t> point_of =
-        number_places(mesh.points, distinct, [&](std::size_t p) { return !joins.empty() && !joins[p]; });
+    const auto apart = [&](std::size_t p) { return !joins.empty() && !joins[p]; };
+    VKMESH_TRY(std::vector<std::uint32_t> point_of, number_places(mesh.points, distinct, apart, stop));
     return merge(mesh, std::move(point_of), std::move(distinct));
   });
 }
 
+Result<Welded> detail::weld(const IndexedFaceSet& mesh, const WeldOptions& options, Stop* stop) {
+  return catching([&] { return weld_points(mesh, options, stop); });
+}
+
 Result<Welded> weld(const IndexedFaceSet& mesh, const WeldOptions& options) {
-  return detail::catching([&] { return weld_points(mesh, options); });
+  return detail::weld(mesh, options, nullptr);
 }
 
 Result<IndexedFaceSet> weld(const PolygonSoup& soup) {

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -180,6 +182,65 @@ TEST_CASE("decimation: a target out of reach is not bought with what may go", "[
     for (const std::uint32_t v : d.source_vertex) left += v < large ? 1 : 0;
     CHECK(left >= 10);
   }
+}
+
+namespace {
+
+IndexedFaceSet octahedron() {
+  IndexedFaceSet mesh;
+  mesh.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.corners = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
+  return mesh;
+}
+
+/// A torus, and so many copies of a small part beside it.
+IndexedFaceSet torus_and(std::uint32_t rings, std::uint32_t sides, IndexedFaceSet part, int count) {
+  for (Vec3& p : part.points) p *= 0.01f;
+  IndexedFaceSet all = test::torus(rings, sides);
+  for (int i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(all.points.size());
+    for (const Vec3& p : part.points)
+      all.points.push_back(
+          p + Vec3(3.0f + 0.1f * static_cast<float>(i % 20), 0.1f * static_cast<float>(i / 20), 0));
+    for (const std::uint32_t c : part.corners) all.corners.push_back(first + c);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("decimation: small parts that hold a target are not made up for by the rest",
+          "[decimate][reference]") {
+  const std::map<std::string, IndexedFaceSet> parts = {{"tetrahedra", test::tetrahedron()},
+                                                       {"octahedra", octahedron()},
+                                                       {"cards", test::grid(1, 1)},
+                                                       {"spheres", test::icosphere(1)},
+                                                       {"cubes", test::cube()}};
+  for (const auto& [name, part] : parts)
+    for (DecimateOptions options : ways()) {
+      CAPTURE(name, static_cast<int>(options.operation));
+      const auto of_torus = [](const auto& vertices, std::size_t torus) {
+        return static_cast<std::size_t>(std::ranges::count_if(vertices, [&](auto v) { return v < torus; }));
+      };
+      const IndexedFaceSet all = torus_and(150, 100, part, 200);
+      options.target.faces = 1200;
+      const Decimated d = run(all, options);
+      CHECK((d.stop == DecimateStop::kOutOfProportion || d.mesh.face_count() <= 1200));
+      CHECK(of_torus(d.source_vertex, 15000) >= 60);
+
+      // A small one, as the reference leaves it.
+      const IndexedFaceSet small = torus_and(40, 30, part, 60);
+      options.target.faces = small.face_count() / 12;
+      const Decimated fast = run(small, options);
+      std::set<std::uint32_t> left;
+      for (const auto& face : detail::decimate_by_reference({small.points, small.corners}, options).faces)
+        left.insert(face.begin(), face.end());
+      const std::size_t expected = of_torus(left, 1200), found = of_torus(fast.source_vertex, 1200);
+      CAPTURE(expected, found, left.size(), fast.positions.size());
+      CHECK(found >= 10);
+      CHECK(4 * found >= 3 * expected);
+      CHECK(4 * found <= 5 * expected);
+    }
 }
 
 TEST_CASE("decimation: vertices of thin parts go as they do by half-edge collapses",

@@ -106,9 +106,9 @@ void check_quadrics(const IndexedFaceSet& mesh, const detail::ConstraintWeights&
   tbb::task_arena arena(threads);
   CollapseMesh built = arena.execute([&] {
     CollapseMesh made = collapse_mesh_of(mesh);
-    const detail::Wedges wedges(made, mesh.points.size(), [](std::uint32_t c, std::uint32_t d) {
-      return group_of(c / 3) == group_of(d / 3);
-    });
+    const detail::Wedges wedges(
+        made, mesh.points.size(),
+        [](std::uint32_t c, std::uint32_t d) { return group_of(c / 3) == group_of(d / 3); }, nullptr);
     detail::ConstraintWeights all = weights;
     all.wedges = &wedges;
     detail::sum_quadrics(made, all);

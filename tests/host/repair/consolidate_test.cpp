@@ -12,6 +12,9 @@
 
 #include <vkmesh/repair/consolidate.h>
 
+#include "mesh/edge_matching.h"
+#include "repair/weld_boundary.h"
+#include "support/asking_clock.h"
 #include "support/shapes.h"
 
 using namespace vkmesh;
@@ -154,6 +157,21 @@ TEST_CASE("corners that name no point and offsets that do not ascend are usage e
   set = test::tetrahedron();
   set.corners.pop_back();
   CHECK(consolidate(set).error().code == ErrorCode::kUsage);
+}
+
+TEST_CASE("welding and the search for neighbours ask all along, and end where they are told to") {
+  const IndexedFaceSet set = test::grid(256, 256);
+  const auto done = [](const auto& result, const detail::Stop& stop) {
+    CHECK(result.has_value() == !stop.is_set());
+    if (!result) CHECK(result.error().code == ErrorCode::kInterrupted);
+  };
+  test::check_asks(16, [&](detail::Stop& stop) {
+    done(detail::match_edges(set.points.size(), set.corners, set.face_offsets, &stop), stop);
+  });
+  test::check_asks(4, [&](detail::Stop& stop) { done(detail::weld_boundary(set, {}, &stop), stop); });
+  for (const double tolerance : {0.0, 0.25})
+    test::check_asks(
+        4, [&](detail::Stop& stop) { done(detail::weld(set, {Length::absolute(tolerance)}, &stop), stop); });
 }
 
 TEST_CASE("consolidation can be cancelled at any report, of input that needs no repair, too") {

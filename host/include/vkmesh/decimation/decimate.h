@@ -74,7 +74,9 @@ struct DecimateTargets {
   std::optional<std::size_t> vertices;
   /// This share of the faces is left, in [0, 1].
   std::optional<double> ratio;
-  /// So many seconds have passed; at least 0. The only target whose result depends on the machine.
+  /// So many seconds have passed; at least 0. The only target whose result depends on the machine. Where they
+  /// have before anything was removed, the result is the input without its isolated vertices, and nothing is
+  /// pruned.
   std::optional<double> seconds;
   /// Go on to a target that what is locked, or held by seams or the boundary, puts out of reach. Default off:
   /// at least an eighth of the share that was asked for is left of the vertices that may go.

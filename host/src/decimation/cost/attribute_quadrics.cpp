@@ -32,7 +32,8 @@ void lock(EdgeBatch::Words& end, std::size_t lane) {
 
 AttributeQuadrics::AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_count, Wedges wedges,
                                      std::span<const DecimateAttribute> attributes,
-                                     std::span<const std::uint32_t> corners, double diagonal, bool apart)
+                                     std::span<const std::uint32_t> corners, double diagonal, bool apart,
+                                     Stop& stop)
     : mesh_(mesh), wedges_(std::move(wedges)), attributes_(attributes), corners_(corners) {
   for (std::size_t a = 0; a < attributes.size(); ++a) {
     const DecimateAttribute& attribute = attributes[a];
@@ -72,7 +73,11 @@ AttributeQuadrics::AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_coun
     for (std::size_t v = 0; v < vertex_count; ++v) plain_[v] = mesh.vertices[v].quadric;
     deviation_.assign(vertex_count, 0.0f);
   }
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) add_face(f);
+  constexpr std::uint32_t kBetween = 1 << 13;  // faces from one question to the next
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (f % kBetween == 0 && !goes_on(&stop)) return;
+    add_face(f);
+  }
 }
 
 void AttributeQuadrics::keep_changes() {

@@ -38,9 +38,10 @@ class AttributeQuadrics {
   /// `corners`: vertices of the input; `diagonal`: of the box, local. The vertices have their geometric
   /// quadrics, to which those of the attributes are added, unless they are to stand apart, for removals.
   /// O(n · components).
+  /// Where `stop` is set meanwhile they are of no use.
   AttributeQuadrics(CollapseMesh& mesh, std::size_t vertex_count, Wedges wedges,
                     std::span<const DecimateAttribute> attributes, std::span<const std::uint32_t> corners,
-                    double diagonal, bool apart);
+                    double diagonal, bool apart, Stop& stop);
 
   /// What collapses do from now on is kept, each being a step.
   void keep_changes();

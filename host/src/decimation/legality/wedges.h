@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/stop.h"
 #include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
@@ -42,14 +43,20 @@ struct SeamSides {
 class Wedges {
  public:
   /// `same(c, d)`: whether two corners of the input, at one vertex, have the same attributes. Locks the
-  /// vertices that are fixed. O(n).
+  /// vertices that are fixed. O(n). Where `stop` is set meanwhile they are of no use.
   template <class Same>
-  Wedges(CollapseMesh& mesh, std::size_t vertex_count, Same&& same)
+  Wedges(CollapseMesh& mesh, std::size_t vertex_count, Same&& same, Stop* stop)
       : of_(4 * mesh.face_count(), kInvalid), marks_(vertex_count, 0) {
-    for (std::uint32_t v = 0; v < vertex_count; ++v)
-      if (mesh.vertices[v].alive()) find_wedges(mesh, v, same);
-    for (std::uint32_t v = 0; v < vertex_count; ++v)
-      if (mesh.vertices[v].alive()) mark(mesh, v);
+    constexpr std::uint32_t kBetween = 1 << 14;  // vertices from one question to the next
+    const auto for_each_alive = [&](auto&& body) {
+      for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        if (v % kBetween == 0 && !goes_on(stop)) return;
+        if (mesh.vertices[v].alive()) body(v);
+      }
+    };
+    for_each_alive([&](std::uint32_t v) { find_wedges(mesh, v, same); });
+    if (!goes_on(stop)) return;
+    for_each_alive([&](std::uint32_t v) { mark(mesh, v); });
   }
 
   [[nodiscard]] std::size_t count() const { return source_corner_.size(); }

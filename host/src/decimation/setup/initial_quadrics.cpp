@@ -131,18 +131,20 @@ void add_constraint(CollapseMesh& mesh, const VertexRanges::Range& range, std::u
 
 }  // namespace
 
-void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights) {
-  mesh.vertex_ranges().for_each([&](const VertexRanges::Range& range) {
-    add_faces(mesh, range);
-    if (weights.boundary > 0)
-      for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
-        add_constraint(mesh, range, mesh.twin(static_cast<std::uint32_t>(g)), weights.boundary);
-    if (weights.crease > 0 || weights.seam > 0)
-      range.for_each_face([&](std::uint32_t f) {
-        for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
-          if (!mesh.is_ghost(mesh.twin(h))) add_constraint(mesh, range, h, constraint(mesh, h, weights));
-      });
-  });
+void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights, Stop* stop) {
+  mesh.vertex_ranges().for_each(
+      [&](const VertexRanges::Range& range) {
+        add_faces(mesh, range);
+        if (weights.boundary > 0)
+          for (std::size_t g = 4 * mesh.face_count(); g < mesh.half_edge_bound(); g += 4)
+            add_constraint(mesh, range, mesh.twin(static_cast<std::uint32_t>(g)), weights.boundary);
+        if (weights.crease > 0 || weights.seam > 0)
+          range.for_each_face([&](std::uint32_t f) {
+            for (std::uint32_t h = 4 * f; h < 4 * f + 3; ++h)
+              if (!mesh.is_ghost(mesh.twin(h))) add_constraint(mesh, range, h, constraint(mesh, h, weights));
+          });
+      },
+      stop);
 }
 
 }  // namespace vkmesh::detail

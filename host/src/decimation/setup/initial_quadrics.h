@@ -1,6 +1,7 @@
 // The quadrics that vertices start with.
 #pragma once
 
+#include "base/stop.h"
 #include "decimation/legality/wedges.h"
 #include "decimation/vertex_record.h"
 
@@ -17,7 +18,7 @@ struct ConstraintWeights {
 };
 
 /// Adds to the quadrics of the vertices, which must be zero, the planes of their faces, weighted by area, and
-/// constraint planes. O(n).
-void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights);
+/// constraint planes. O(n). Where `stop` is set meanwhile they are of no use.
+void sum_quadrics(CollapseMesh& mesh, const ConstraintWeights& weights, Stop* stop = nullptr);
 
 }  // namespace vkmesh::detail

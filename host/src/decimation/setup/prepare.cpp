@@ -10,8 +10,12 @@
 namespace vkmesh::detail {
 namespace {
 
-/// Whether two corners at one vertex are of one group and have the same values of all attributes.
-bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t d) {
+/// At least so much of the share of vertices that is to be left is left of those that may go.
+constexpr double kLeastShare = 0.125;
+
+}  // namespace
+
+bool have_same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t d) {
   const auto& groups = options.corner_groups;
   if (!groups.empty() && groups[c] != groups[d]) return false;
   return std::all_of(options.attributes.begin(), options.attributes.end(), [&](const DecimateAttribute& a) {
@@ -22,31 +26,6 @@ bool same_values(const DecimateOptions& options, std::uint32_t c, std::uint32_t 
     return std::ranges::equal(value(c), value(d));
   });
 }
-
-/// At least so much of the share of vertices that is to be left is left of those that may go.
-constexpr double kLeastShare = 0.125;
-
-/// How many vertices stay whatever goes, of so many: those that are locked, or as many as components need at
-/// least, which is four for each that is closed like a sphere.
-std::size_t held_vertices(const CollapseMesh& mesh, const DecimateOptions& options, std::size_t faces,
-                          std::size_t vertices) {
-  const DecimateLocks& locks = options.locked;
-  const bool any_locked = !locks.vertices.empty() || !locks.edges.empty() || !locks.faces.empty() ||
-                          options.curves.boundary == DecimateBoundary::kKept || !options.attributes.empty() ||
-                          !options.corner_groups.empty();
-  std::size_t locked = 0;
-  for (std::uint32_t v = 0; any_locked && v < mesh.apex(); ++v) {
-    const VertexRecord& vertex = mesh.vertices[v];
-    locked += vertex.alive() && vertex.has(VertexRecord::kLocked) ? 1 : 0;
-  }
-  // No more components than half of Euler's characteristic would be no spheres.
-  const std::size_t boundary = mesh.half_edge_bound() / 4 - mesh.face_count();
-  const auto euler =
-      static_cast<std::ptrdiff_t>(vertices + faces) - static_cast<std::ptrdiff_t>((3 * faces + boundary) / 2);
-  return std::max(locked, static_cast<std::size_t>(2 * std::max<std::ptrdiff_t>(euler, 0)));
-}
-
-}  // namespace
 
 void lock_vertices(CollapseMesh& mesh, std::span<const std::uint32_t> corners,
                    const DecimateOptions& options) {
@@ -68,10 +47,11 @@ void lock_vertices(CollapseMesh& mesh, std::span<const std::uint32_t> corners,
 }
 
 std::optional<Wedges> find_wedges(CollapseMesh& mesh, std::size_t vertex_count,
-                                  const DecimateOptions& options) {
+                                  const DecimateOptions& options, Stop& stop) {
   if (options.attributes.empty() && options.corner_groups.empty()) return std::nullopt;
   return std::make_optional<Wedges>(
-      mesh, vertex_count, [&](std::uint32_t c, std::uint32_t d) { return same_values(options, c, d); });
+      mesh, vertex_count, [&](std::uint32_t c, std::uint32_t d) { return have_same_values(options, c, d); },
+      &stop);
 }
 
 ConstraintWeights constraint_weights(const DecimateCurves& curves, const std::optional<Wedges>& wedges) {
@@ -105,17 +85,17 @@ Limits limits_of(const DecimateOptions& options, std::size_t faces, const Frame&
   return limits;
 }
 
-void keep_in_proportion(Limits& limits, const CollapseMesh& mesh, const DecimateOptions& options,
-                        std::size_t faces, std::size_t vertices) {
-  if (options.target.force) return;
+double share_asked_for(const Limits& limits, std::size_t faces, std::size_t vertices) {
   const auto share = [](std::size_t asked, std::size_t all) {
     return all > 0 ? std::min(1.0, static_cast<double>(asked) / static_cast<double>(all)) : 0.0;
   };
-  const double ratio = std::max(share(limits.faces, faces), share(limits.vertices, vertices));
-  if (ratio == 0) return;
-  const auto held = static_cast<double>(std::min(vertices, held_vertices(mesh, options, faces, vertices)));
-  const double kept = kLeastShare * ratio * (static_cast<double>(vertices) - held);
-  if (kept >= 1) limits.vertices = std::max(limits.vertices, static_cast<std::size_t>(held + kept));
+  return std::max(share(limits.faces, faces), share(limits.vertices, vertices));
+}
+
+void keep_in_proportion(Limits& limits, double share, std::size_t vertices, std::size_t held) {
+  const auto stay = static_cast<double>(std::min(vertices, held));
+  const double kept = kLeastShare * share * (static_cast<double>(vertices) - stay);
+  if (kept >= 1) limits.vertices = std::max(limits.vertices, static_cast<std::size_t>(stay + kept));
 }
 
 double mean_weight_of(const CollapseMesh& mesh) {

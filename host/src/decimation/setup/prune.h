@@ -3,6 +3,9 @@
 
 #include <cstddef>
 
+#include <vkmesh/base/result.h>
+
+#include "base/stop.h"
 #include "decimation/vertex_record.h"
 
 namespace vkmesh::detail {
@@ -12,7 +15,8 @@ struct Pruned {
 };
 
 /// Takes away each component whose bounding box has a diagonal of at most `size`, the one of most faces
-/// excepted. O(faces), 8 bytes a face for the time.
-Pruned prune_components(CollapseMesh& mesh, float size);
+/// excepted. O(faces), 8 bytes a face for the time. Errors: kInterrupted where `stop` is set before any has
+/// gone.
+[[nodiscard]] Result<Pruned> prune_components(CollapseMesh& mesh, float size, Stop& stop);
 
 }  // namespace vkmesh::detail

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/stop.h"
 
 namespace vkmesh::detail {
 
@@ -92,7 +93,7 @@ class EditFaces::Fan {
 };
 
 bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading,
-                        std::uint32_t* const leaving) {
+                        std::uint32_t* const leaving, Stop* stop) {
   constexpr std::size_t kGrain = 1 << 14;
   const std::size_t corners = 3 * face_count_;
   // `leaving`: the half-edges that leave each vertex, then what is read ahead of them.
@@ -100,13 +101,16 @@ bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& le
   static_assert(kScratchTail == kAhead + kUsual);
   for (std::size_t i = 0; i < kScratchTail; ++i) leaving[corners + i] = 0;
   std::vector<std::uint32_t> ends(vertex_count, 0);  // where those of each vertex begin, and then end
-  ranges_.for_each([&](const VertexRanges::Range& range) {
-    range.for_each_face([&](std::uint32_t f) {
-      prefetch_stream(&faces_[f]);
-      for (const std::uint32_t v : faces_[f].origin)
-        if (range.has(v)) ++ends[v];
-    });
-  });
+  ranges_.for_each(
+      [&](const VertexRanges::Range& range) {
+        range.for_each_face([&](std::uint32_t f) {
+          prefetch_stream(&faces_[f]);
+          for (const std::uint32_t v : faces_[f].origin)
+            if (range.has(v)) ++ends[v];
+        });
+      },
+      stop);
+  if (!goes_on(stop)) return false;
   std::size_t most = 0;
   std::uint32_t sum = 0;
   for (std::uint32_t& end : ends) {
@@ -115,15 +119,18 @@ bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& le
     end = sum;
     sum += count;
   }
-  ranges_.for_each([&](const VertexRanges::Range& range) {
-    range.for_each_face([&](std::uint32_t f) {
-      prefetch_stream(&faces_[f]);
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        const std::uint32_t v = faces_[f].origin[i];
-        if (range.has(v)) leaving[ends[v]++] = 4 * f + i;
-      }
-    });
-  });
+  ranges_.for_each(
+      [&](const VertexRanges::Range& range) {
+        range.for_each_face([&](std::uint32_t f) {
+          prefetch_stream(&faces_[f]);
+          for (std::uint32_t i = 0; i < 3; ++i) {
+            const std::uint32_t v = faces_[f].origin[i];
+            if (range.has(v)) leaving[ends[v]++] = 4 * f + i;
+          }
+        });
+      },
+      stop);
+  if (!goes_on(stop)) return false;
 
   leading.resize(vertex_count);
   struct Fans {
@@ -137,6 +144,7 @@ bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& le
   };
   const auto fans = parallel_sum<Fans>(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
     Fans found;
+    if (!goes_on(stop)) return found;
     Fan fan(most);
     std::size_t first = begin == 0 ? 0 : ends[begin - 1];
     for (std::size_t v = begin; v < end && found.single; first = ends[v++]) {
@@ -159,7 +167,7 @@ bool EditFaces::connect(std::size_t vertex_count, std::vector<std::uint32_t>& le
     }
     return found;
   });
-  if (!fans.single) return false;
+  if (!fans.single || !goes_on(stop)) return false;
   return add_ghosts(fans.boundary);
 }
 

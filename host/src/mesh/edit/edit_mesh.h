@@ -18,6 +18,7 @@
 #include "base/large_array.h"
 #include "base/parallel.h"
 #include "base/prefetch.h"
+#include "base/stop.h"
 #include "mesh/edit/vertex_ranges.h"
 
 namespace vkmesh::detail {
@@ -98,9 +99,10 @@ class EditFaces {
     faces_[b >> 2].twin[b & 3u] = a;
   }
   /// Pairs the half-edges of the faces, finds one that leaves each vertex, and adds the ghosts. False unless
-  /// the faces form an oriented manifold. `scratch`: room for scratch_words() words.
+  /// the faces form an oriented manifold. `scratch`: room for scratch_words() words. Where `stop` is set
+  /// meanwhile the mesh is of no use.
   [[nodiscard]] bool connect(std::size_t vertex_count, std::vector<std::uint32_t>& leading,
-                             std::uint32_t* scratch);
+                             std::uint32_t* scratch, Stop* stop);
   [[nodiscard]] std::size_t scratch_words() const { return 3 * face_count_ + kScratchTail; }
   /// Copies the faces of a mesh with their twins, and adds the ghosts. False where there are too many. O(n).
   [[nodiscard]] bool copy(const HalfEdgeMesh& mesh);
@@ -131,14 +133,15 @@ inline constexpr std::uint32_t kVertexGone = 0x80000000u;
 template <class Vertex>
 class EditMesh : public EditFaces {
  public:
-  enum class Built { kDone, kNoSuchVertex, kNoManifold };
+  enum class Built { kDone, kNoSuchVertex, kNoManifold, kStopped };
   /// Makes faces of what face_of(f), called on any threads, gives of each but its twins, and sets `leading`
   /// to a half-edge that leaves each vertex, kInvalid where there is none. Unless corners are below
   /// vertex_count and the faces form an oriented manifold of simple triangles the mesh is of no use. O(n),
-  /// and O(d log d) for each vertex of many faces d. The vertices have room, and no values yet.
+  /// and O(d log d) for each vertex of many faces d. The vertices have room, and no values yet. Every part
+  /// asks `stop`; where that is set the mesh is of no use.
   template <class FaceOf>
   [[nodiscard]] Built build(std::size_t vertex_count, std::size_t face_count, FaceOf&& face_of,
-                            std::vector<std::uint32_t>& leading) {
+                            std::vector<std::uint32_t>& leading, Stop* stop = nullptr) {
     face_count_ = face_count;
     apex_ = static_cast<std::uint32_t>(vertex_count);
     vertex_bound_ = vertex_count + 1;
@@ -146,6 +149,7 @@ class EditMesh : public EditFaces {
     std::atomic<bool> simple = true, in_range = true;
     ranges_ = VertexRanges(vertex_count, face_count, [&](std::size_t begin, std::size_t end) {
       VertexRanges::Extent extent;
+      if (!goes_on(stop)) return extent;
       bool all_simple = true;
       for (std::size_t f = begin; f < end; ++f) {
         prefetch_stream(&faces_[f]);
@@ -159,14 +163,16 @@ class EditMesh : public EditFaces {
       if (extent.high >= vertex_count) in_range = false;
       return extent;
     });
+    if (!goes_on(stop)) return Built::kStopped;
     if (!in_range) return Built::kNoSuchVertex;
     if (!simple) return Built::kNoManifold;
     // Until the vertices have values their memory is scratch, at no cost.
     constexpr std::size_t kWords = sizeof(Vertex) / sizeof(std::uint32_t);
     vertices = LargeArray<Vertex>(std::max(vertex_bound_, (scratch_words() + kWords - 1) / kWords));
-    return connect(vertex_count, leading, reinterpret_cast<std::uint32_t*>(&vertices[0]))
-               ? Built::kDone
-               : Built::kNoManifold;
+    const bool manifold =
+        connect(vertex_count, leading, reinterpret_cast<std::uint32_t*>(&vertices[0]), stop);
+    if (!goes_on(stop)) return Built::kStopped;
+    return manifold ? Built::kDone : Built::kNoManifold;
   }
 
   /// Takes over the connectivity of a valid mesh of triangles, with its numbers: half-edge 3f + i becomes

@@ -11,6 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "base/parallel.h"
+#include "base/stop.h"
 
 namespace vkmesh::detail {
 
@@ -41,19 +42,21 @@ class VertexRanges {
     });
   }
 
-  /// Calls body(range) once for each range, on any threads.
+  /// Calls body(range) once for each range, on any threads. Where `stop` is set meanwhile, what the loops
+  /// over faces have still to come to is left out.
   template <class Body>
-  void for_each(Body&& body) const {
+  void for_each(Body&& body, Stop* stop = nullptr) const {
     parallel_ranges(range_count_, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         body(Range{*this, static_cast<std::uint32_t>(vertex_count_ * i / range_count_),
-                   static_cast<std::uint32_t>(vertex_count_ * (i + 1) / range_count_)});
+                   static_cast<std::uint32_t>(vertex_count_ * (i + 1) / range_count_), stop});
     });
   }
 
   struct Range {
     const VertexRanges& all;
     std::uint32_t begin, end;
+    Stop* stop;
 
     [[nodiscard]] bool has(std::uint32_t v) const { return v - begin < end - begin; }
     /// Calls f(begin, end) in ascending order for ranges of faces among which are all that have a corner in
@@ -62,6 +65,7 @@ class VertexRanges {
     void for_each_range(F&& f) const {
       for (std::size_t b = 0; b < all.blocks_.size(); ++b) {
         if (all.blocks_[b].high < begin || all.blocks_[b].low >= end) continue;
+        if (!goes_on(stop)) return;
         f(static_cast<std::uint32_t>(b * kBlock),
           static_cast<std::uint32_t>(std::min((b + 1) * kBlock, all.face_count_)));
       }
