@@ -249,7 +249,7 @@ Result<DelaunayTriangulation> triangulate(std::span<const DVec2> points, const P
   });
   if (!finished) return fail(ErrorCode::kInterrupted, "cancelled");
   PlanarTriangles triangles = insertion.take();
-  places = {};
+  std::vector<DVec2>().swap(places);
   result.mesh = canonical_mesh(std::move(triangles), count);
   return result;
 }

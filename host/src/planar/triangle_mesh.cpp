@@ -6,6 +6,15 @@
 #include "base/huge_pages.h"
 
 namespace vkmesh::detail {
+namespace {
+
+/// Its memory is free afterwards, which it is not after the assignment of an empty list.
+template <class T>
+void release(std::vector<T>& vector) {
+  std::vector<T>().swap(vector);
+}
+
+}  // namespace
 
 HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count) {
   const std::uint32_t* const origin = triangles.origins.data();
@@ -35,7 +44,7 @@ HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count)
     const std::uint32_t* const corner = origin + 3 * std::size_t{t};
     by_vertex[end[corner[k]]++] = {corner[(k + 1) % 3], corner[(k + 2) % 3], 4 * t + k};
   }
-  triangles.origins = {};
+  release(triangles.origins);
   std::vector<std::uint32_t> origins = large_vector<std::uint32_t>(3 * std::size_t{faces});
   // For each triangle 4 times its face, and its corner that comes first.
   std::vector<std::uint32_t> renumbered(count, kInvalid);
@@ -50,15 +59,19 @@ HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count)
       renumbered[face.half_edge >> 2] = 4 * f + (face.half_edge & 3u);
     }
   }
+  release(by_vertex);
   std::vector<std::uint32_t> twins = large_vector<std::uint32_t>(3 * std::size_t{faces});
-  constexpr std::array<std::array<std::uint8_t, 3>, 3> kBehind = {{{0, 1, 2}, {2, 0, 1}, {1, 2, 0}}};
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    std::uint32_t h = by_vertex[f].half_edge;
-    for (std::size_t i = 0; i < 3; ++i, h = PlanarTriangles::next(h)) {
-      const std::uint32_t t = triangles.twin(h), at = t == kInvalid ? kInvalid : renumbered[t >> 2];
-      twins[3 * f + i] = at == kInvalid ? kInvalid : 3 * (at >> 2) + kBehind[at & 3u][t & 3u];
+  constexpr std::array<std::array<std::uint8_t, 3>, 3> kCorner = {{{0, 1, 2}, {2, 0, 1}, {1, 2, 0}}};
+  for (std::size_t t = 0; t < count; ++t) {
+    const std::uint32_t here = renumbered[t];
+    if (here == kInvalid) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t other = triangles.twins[3 * t + i], there = renumbered[other >> 2];
+      twins[3 * std::size_t{here >> 2} + kCorner[here & 3u][i]] =
+          there == kInvalid ? kInvalid : 3 * (there >> 2) + kCorner[there & 3u][other & 3u];
     }
   }
+  release(triangles.twins);
   return HalfEdgeMesh::from_twins(std::move(origins), std::move(twins), vertex_count);
 }
 
