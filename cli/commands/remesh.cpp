@@ -26,7 +26,7 @@ namespace {
 
 struct RemeshChoice {
   std::optional<double> edge_length, relative_edge_length, adaptive, relative_adaptive, shortest, longest,
-      creases, tolerance, time_limit;
+      creases, tolerance, max_deviation, max_relative_deviation, time_limit;
   std::optional<std::size_t> faces;
   unsigned iterations = RemeshOptions{}.iterations;
   std::string boundary = "in-shape", lock;
@@ -45,6 +45,7 @@ RemeshOptions options_of(const RemeshChoice& choice) {
     const double angle = *choice.creases / kDegrees;
     options.curves.creases = CreaseOptions{.sharp_angle = angle, .soft_angle = angle / 2};
   }
+  options.max_deviation = length_of(choice.max_deviation, choice.max_relative_deviation);
   options.iterations = choice.iterations;
   options.seconds = choice.time_limit;
   return options;
@@ -304,6 +305,20 @@ void add_remesh(CLI::App& app, Program& program) {
                    "units of the file's coordinates; default a twentieth of the shortest edges asked for")
       ->type_name("T")
       ->check(number_between(0, kMost));
+  CLI::Option* deviation =
+      command
+          ->add_option(
+              "--max-deviation", choice->max_deviation,
+              "How far the new surface and the old one may lie from each other, in units of the file's\n"
+              "coordinates: where it bends too much for long edges, edges stay short; default any")
+          ->type_name("D")
+          ->check(number_between(kLeast, kMost));
+  command
+      ->add_option("--max-relative-deviation", choice->max_relative_deviation,
+                   "The same as a share of the bounding box's diagonal")
+      ->type_name("D")
+      ->check(number_between(kLeast, kMost))
+      ->excludes(deviation);
   command
       ->add_option("--lock", choice->lock,
                    "Name of an attribute: points, and corners of faces, where it is not 0 stay in place")

@@ -97,6 +97,8 @@ TEST_CASE("remesh refuses what is out of range, and says so") {
        {Case{{"--edge-length", "0"}, "--edge-length"}, Case{{"--edge-length", "-1"}, "--edge-length"},
         Case{{"--edge-length", "nan"}, "--edge-length"}, Case{{"--faces", "x"}, "--faces"},
         Case{{"--edge-length", "1", "--faces", "5"}, "--edge-length"},
+        Case{{"--max-deviation", "0"}, "--max-deviation"},
+        Case{{"--max-deviation", "1", "--max-relative-deviation", "1"}, "--max-relative-deviation"},
         Case{{"--min-edge-length", "1"}, "--min-edge-length"}, Case{{"--lock", "mark"}, "mark"},
         Case{{"--boundary", "free"}, "--boundary"}, Case{{"--edge-length", "1e-9"}, "hundred million", 4}}) {
     std::vector<std::string> arguments = {"remesh", in, out};

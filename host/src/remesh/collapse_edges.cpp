@@ -41,22 +41,31 @@ class Collapser {
       // else.
       const DVec3 middle =
           state_.rounded(0.5 * (state_.position(mesh_.origin(h)) + state_.position(mesh_.origin(t))));
-      if (judge_middle(h, p, q, middle, improves)) {
+      if (judge_middle(h, p, q, middle, improves) && stays_near_middle(h, p, q, middle)) {
+        const std::uint32_t place = state_.surface
+                                        .nearer_walk(mesh_.vertices[mesh_.origin(h)].place,
+                                                     mesh_.vertices[mesh_.origin(t)].place, middle)
+                                        .face;
         apply(h, p);
+        state_.deviation.replace();
         RemeshVertex& kept = mesh_.vertices[mesh_.origin(q.edges.front())];
         kept.position = middle;
-        kept.place = state_.surface.walk(kept.place, middle).face;
+        kept.place = place;
         kept.is_placed = 0;
         return true;
       }
     }
     const std::optional<double> one = judge(h, p, improves), other = judge(t, q, improves);
-    if (!one && !other) return false;
-    if (one && (!other || *one >= *other))
-      apply(h, p);
-    else
-      apply(t, q);
-    return true;
+    // The better one first.
+    const bool one_first = one && (!other || *one >= *other);
+    for (const bool is_one : {one_first, !one_first}) {
+      if (!(is_one ? one : other)) continue;
+      if (!stays_near(is_one ? h : t, is_one ? p : q)) continue;
+      apply(is_one ? h : t, is_one ? p : q);
+      state_.deviation.replace();
+      return true;
+    }
+    return false;
   }
 
   /// Whether the origin of h may become its target: curves stay, and so do their ends.
@@ -130,12 +139,50 @@ class Collapser {
       return true;
     });
   }
-  /// Whether edges to a place of this target length are not to be split again.
+  /// Adds the faces around the origin of h as they are when it has moved.
+  void add_faces(std::uint32_t h, const OneRing& ring, const DVec3& to) {
+    const auto add = [&](std::uint32_t g) {
+      if (!mesh_.is_ghost(g)) gone_.push_back(g / 4);
+    };
+    add(h);
+    for (const std::uint32_t edge : ring.edges) add(edge);
+    for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+      if (!mesh_.is_ghost(ring.edges[i]))
+        made_.push_back({ring.edges[i] / 4,
+                         {to, state_.position(ring.vertices[i]), state_.position(ring.vertices[i + 1])},
+                         state_.original_near(ring.edges[i])});
+  }
+  /// Whether all stays near the original.
+  [[nodiscard]] bool stays_near(std::uint32_t h, const OneRing& ring) {
+    if (!state_.deviation.is_set()) return true;
+    gone_.clear();
+    made_.clear();
+    add_faces(h, ring, state_.position(mesh_.target(h)));
+    return state_.deviation.allows(gone_, made_);
+  }
+  [[nodiscard]] bool stays_near_middle(std::uint32_t h, const OneRing& p, const OneRing& q,
+                                       const DVec3& middle) {
+    if (!state_.deviation.is_set()) return true;
+    if (!state_.deviation.is_near(middle, mesh_.vertices[mesh_.origin(h)].place)) return false;
+    gone_.clear();
+    made_.clear();
+    add_faces(h, p, middle);
+    // The two faces at the edge are there already.
+    const std::size_t shared = gone_.size();
+    add_faces(mesh_.twin(h), q, middle);
+    for (const std::uint32_t g : {h, mesh_.twin(h)})
+      if (const auto again =
+              std::find(gone_.begin() + static_cast<std::ptrdiff_t>(shared), gone_.end(), g / 4);
+          again != gone_.end())
+        gone_.erase(again);
+    return state_.deviation.allows(gone_, made_);
+  }
+  /// Whether edges to a place of this target length are not too long.
   [[nodiscard]] bool are_short(const OneRing& ring, const DVec3& to, float length) const {
     for (const std::uint32_t v : ring.vertices) {
       if (v == mesh_.apex()) continue;
       const DVec3 edge = state_.position(v) - to;
-      const double longest = kSplitBeyond * static_cast<double>(std::min(mesh_.vertices[v].length, length));
+      const double longest = kLongestMade * static_cast<double>(std::min(mesh_.vertices[v].length, length));
       if (glm::dot(edge, edge) > longest * longest) return false;
     }
     return true;
@@ -177,7 +224,8 @@ class Collapser {
   RemeshState& state_;
   RemeshMesh& mesh_;
   LongRing ring_p_, ring_q_;
-  std::vector<std::uint32_t> sorted_;
+  std::vector<std::uint32_t> sorted_, gone_;
+  std::vector<DeviationBound::Face> made_;
 };
 
 }  // namespace

@@ -32,6 +32,8 @@ class OriginalSurface {
   [[nodiscard]] const HalfEdgeMesh& mesh() const { return mesh_; }
   [[nodiscard]] double scale() const { return scale_; }
   [[nodiscard]] DVec3 position(std::uint32_t v) const { return DVec3(positions_[v]) * scale_; }
+  /// Along the normal of a face, twice its area long.
+  [[nodiscard]] DVec3 normal(std::uint32_t face) const;
   /// Faces that no chain of edges joins but across these half-edges are of different patches. O(faces).
   void part_at(const std::vector<bool>& half_edges);
 
@@ -41,6 +43,13 @@ class OriginalSurface {
   /// around: the nearest point of the neighbourhood, never one of another sheet that passes nearby. Stays in
   /// the patch of the face.
   [[nodiscard]] Foot walk(std::uint32_t face, const DVec3& p) const;
+  /// The nearer of where walks from two faces end: at a fold one may stay on the wrong leaf.
+  [[nodiscard]] Foot nearer_walk(std::uint32_t one, std::uint32_t other, const DVec3& p) const {
+    const Foot first = walk(one, p);
+    if (one == other) return first;
+    const Foot second = walk(other, p);
+    return second.distance2 < first.distance2 ? second : first;
+  }
   /// The nearest point of all, by the tree. build_tree() first.
   [[nodiscard]] Foot search(const Foot& hint, const DVec3& p) const;
   void build_tree();
@@ -55,7 +64,6 @@ class OriginalSurface {
     const std::uint32_t t = mesh_.twins()[h];
     return t == kInvalid || patch_.empty() || !is_border_[h] ? t : kInvalid;
   }
-  [[nodiscard]] DVec3 normal(std::uint32_t face) const;
 
   const HalfEdgeMesh& mesh_;
   std::span<const Vec3> positions_;

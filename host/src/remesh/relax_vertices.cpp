@@ -53,13 +53,14 @@ DVec3 middle_of(const RemeshState& state, std::uint32_t v) {
 /// The faces around a vertex, and whether they may have it at another place.
 class Star {
  public:
-  explicit Star(const RemeshState& state) : state_(state) {}
+  explicit Star(RemeshState& state) : state_(state) {}
 
   void gather(std::uint32_t v) {
     const RemeshMesh& mesh = state_.mesh;
     const RemeshVertex& vertex = mesh.vertices[v];
     from_ = vertex.position;
     ring_.clear();
+    edges_.clear();
     // What is free is not on the boundary; else the ring begins behind the two ghosts, if there are any.
     std::uint32_t h = vertex.leading, start = h;
     is_closed_ = true;
@@ -76,6 +77,7 @@ class Star {
     h = start;
     do {
       ring_.push_back(state_.position(mesh.target(h)));
+      edges_.push_back(h);
       h = mesh.around_vertex(h);
     } while (h != start && !mesh.is_ghost(h));
     if (!is_closed_) ring_.push_back(state_.position(mesh.target(h)));
@@ -102,6 +104,23 @@ class Star {
     return is_even || worst_shape(to) >= worst_shape(from_);
   }
 
+  /// Whether the faces stay near the original; takes it as moved then. `near`: a face of the original there,
+  /// for a free one.
+  [[nodiscard]] bool stays_near(const DVec3& to, std::uint32_t near) {
+    if (!state_.deviation.is_set()) return true;
+    numbers_.clear();
+    made_.clear();
+    for (std::size_t i = 0; i < face_count(); ++i) {
+      numbers_.push_back(edges_[i] / 4);
+      made_.push_back({edges_[i] / 4,
+                       {to, ring_[i], second(i)},
+                       near != kInvalid ? near : state_.original_near(edges_[i])});
+    }
+    if (!state_.deviation.allows(numbers_, made_)) return false;
+    state_.deviation.replace();
+    return true;
+  }
+
  private:
   [[nodiscard]] std::size_t face_count() const { return is_closed_ ? ring_.size() : ring_.size() - 1; }
   [[nodiscard]] const DVec3& second(std::size_t i) const { return ring_[i + 1 < ring_.size() ? i + 1 : 0]; }
@@ -115,9 +134,12 @@ class Star {
     return worst;
   }
 
-  const RemeshState& state_;
+  RemeshState& state_;
   DVec3 from_{0.0};
-  std::vector<DVec3> ring_;  // around the vertex, counter-clockwise
+  std::vector<DVec3> ring_;           // around the vertex, counter-clockwise
+  std::vector<std::uint32_t> edges_;  // to it, of the faces
+  std::vector<std::uint32_t> numbers_;
+  std::vector<DeviationBound::Face> made_;
   bool is_closed_ = true;
 };
 
@@ -147,7 +169,7 @@ bool relax_on_curve(RemeshState& state, Star& star, std::uint32_t v) {
     const double along = vertex.along + step * (middle - vertex.along);
     const DVec3 to = state.rounded(state.curves.at(curve, along));
     if (to == vertex.position) return false;
-    if (deviation(along) > most || !star.may_move(to)) continue;
+    if (deviation(along) > most || !star.may_move(to) || !star.stays_near(to, kInvalid)) continue;
     vertex.position = to;
     vertex.along = along;
     if (!state.lengths.is_uniform())
@@ -203,7 +225,7 @@ std::size_t relax_vertices(RemeshState& state) {
         foot =
             state.surface.walk(vertex.place, vertex.position + step * (moves[v].position - vertex.position));
       const DVec3 to = state.rounded(foot.point);
-      if (to != vertex.position && !star.may_move(to)) continue;
+      if (to != vertex.position && !(star.may_move(to) && star.stays_near(to, foot.face))) continue;
       vertex.position = to;
       vertex.place = foot.face;
       vertex.is_placed = 1;

@@ -56,6 +56,7 @@ Result<void> check_options(const HalfEdgeMesh& mesh, const RemeshOptions& option
   const RemeshCurves& curves = options.curves;
   if (curves.tolerance && !(curves.tolerance->value >= 0 && std::isfinite(curves.tolerance->value)))
     return usage("curves.tolerance must be at least 0 and finite");
+  if (!is_length(options.max_deviation)) return usage("max_deviation must be above 0 and finite");
   if (options.seconds && !(*options.seconds >= 0)) return usage("seconds must be at least 0");
   if (std::ranges::any_of(curves.edges, [&](std::uint32_t h) { return h >= mesh.half_edge_count(); }))
     return usage("an edge of a curve is not of the mesh");
@@ -151,22 +152,28 @@ class Remesher {
     FeatureCurves curves(*surface_, is_curve_, is_locked, 0.5 * shortest_length_);
     lengths.shorten(*surface_, curves.short_ones(longest_length_, kOfShortCurves));
     VKMESH_TRY(const double faces, count_faces(lengths));
-    state_.emplace(RemeshState{.mesh = {},
-                               .surface = *surface_,
-                               .stop = stop_,
-                               .curves = std::move(curves),
-                               .lengths = std::move(lengths),
-                               .scale = measures_.scale,
-                               .inverse_scale = 1 / measures_.scale});
+    state_.emplace(
+        RemeshState{.mesh = {},
+                    .surface = *surface_,
+                    .stop = stop_,
+                    .curves = std::move(curves),
+                    .lengths = std::move(lengths),
+                    .deviation = options_.max_deviation
+                                     ? DeviationBound(*surface_, in_scaled_units(*options_.max_deviation))
+                                     : DeviationBound(*surface_),
+                    .scale = measures_.scale,
+                    .inverse_scale = 1 / measures_.scale});
     const double tolerance = options_.curves.tolerance && options_.curves.tolerance->value > 0
                                  ? in_scaled_units(*options_.curves.tolerance)
                              : options_.curves.tolerance ? 0
                                                          : kCurveTolerance * shortest_length_;
-    state_->curve_tolerance2 = tolerance * tolerance;
+    const double of_boundary = options_.curves.tolerance ? tolerance : kBoundaryTolerance * shortest_length_;
+    const double most = options_.max_deviation
+                            ? DeviationBound::kAtSamples * in_scaled_units(*options_.max_deviation)
+                            : kLongest;
+    state_->curve_tolerance2 = std::min(tolerance, most) * std::min(tolerance, most);
+    state_->boundary_tolerance2 = std::min(of_boundary, most) * std::min(of_boundary, most);
     state_->splits_left = 1000 + 2 * static_cast<std::size_t>(faces);
-    state_->boundary_tolerance2 = options_.curves.tolerance ? tolerance * tolerance
-                                                            : kBoundaryTolerance * kBoundaryTolerance *
-                                                                  shortest_length_ * shortest_length_;
     return build();
   }
 
@@ -407,10 +414,19 @@ class Remesher {
     result.source_faces.resize(faces.size());
     parallel_ranges(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        DVec3 middle{0.0};
-        for (std::uint32_t i = 0; i < 3; ++i) middle += state_->position(mesh.origin(4 * faces[k] + i)) / 3.0;
-        const std::uint32_t near = result.origins[result.corner_origins[3 * k]].face;
-        result.source_faces[k] = state_->surface.walk(near, middle).face;
+        const DVec3 &a = state_->position(mesh.origin(4 * faces[k])),
+                    &b = state_->position(mesh.origin(4 * faces[k] + 1)),
+                    &c = state_->position(mesh.origin(4 * faces[k] + 2)), middle = (a + b + c) / 3.0,
+                    area = area_vector(a, b, c);
+        // At a fold a walk may stay on the wrong leaf: from another corner it finds that which looks as the
+        // face does.
+        for (std::size_t i = 3; i-- > 0;) {
+          const std::uint32_t near = result.origins[result.corner_origins[3 * k + i]].face;
+          const std::uint32_t f = state_->surface.walk(near, middle).face;
+          const bool agrees = glm::dot(state_->surface.normal(f), area) > 0;
+          if (i == 2 || agrees) result.source_faces[k] = f;
+          if (agrees) break;
+        }
       }
     });
   }

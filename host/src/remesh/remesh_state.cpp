@@ -20,4 +20,10 @@ Foot RemeshState::original_at(std::uint32_t h) const {
   return surface.nearest_in(f, vertex.position);
 }
 
+std::uint32_t RemeshState::original_near(std::uint32_t h) const {
+  for (const std::uint32_t g : {h, RemeshMesh::next(h), RemeshMesh::previous(h)})
+    if (const RemeshVertex& vertex = mesh.vertices[mesh.origin(g)]; vertex.is_free()) return vertex.place;
+  return original_at(h).face;
+}
+
 }  // namespace vkmesh::detail

@@ -16,6 +16,7 @@
 
 #include "base/stop.h"
 #include "mesh/edit/edit_mesh.h"
+#include "remesh/deviation_bound.h"
 #include "remesh/feature_curves.h"
 #include "remesh/original_surface.h"
 #include "remesh/target_lengths.h"
@@ -58,6 +59,9 @@ inline constexpr unsigned kCurveTag = 0, kKeptTag = 1, kRefusedTag = 2;
 /// either is nearer to the target than what was (M. Botsch, L. Kobbelt, "A remeshing approach to
 /// multiresolution modeling", 2004).
 inline constexpr double kSplitBeyond = 4.0 / 3.0, kCollapseBelow = 4.0 / 5.0;
+/// Collapses make no edges beyond this multiple of their target: by a little more than what is split again,
+/// or regular meshes that are too dense, whose collapses all make edges of 3/2 of theirs, would stay so.
+inline constexpr double kLongestMade = 1.4;
 
 struct RemeshState {
   RemeshMesh mesh;
@@ -65,6 +69,7 @@ struct RemeshState {
   Stop& stop;
   FeatureCurves curves;
   TargetLengths lengths;
+  DeviationBound deviation;
   double scale = 1, inverse_scale = 1;                   // of coordinates, powers of two
   double curve_tolerance2 = 0, boundary_tolerance2 = 0;  // squared, of curves from their chords
   std::size_t splits = 0, collapses = 0, swaps = 0;
@@ -107,6 +112,8 @@ struct RemeshState {
   }
   /// The point of the original surface at the origin of h, on the side of curves where the face of h is.
   [[nodiscard]] Foot original_at(std::uint32_t h) const;
+  /// A face of the original that is near that of h, and of its patch.
+  [[nodiscard]] std::uint32_t original_near(std::uint32_t h) const;
 };
 
 /// Twice the area of a triangle, along its normal.

@@ -100,9 +100,13 @@ class Splitter {
     } else {
       middle.kind = VertexKind::kFree;
       middle.position = state_.rounded(0.5 * (from.position + to.position));
-      middle.place = state_.surface.walk(state_.original_at(h).face, middle.position).face;
+      middle.place =
+          state_.surface.nearer_walk(state_.original_at(h).face, state_.original_at(t).face, middle.position)
+              .face;
     }
     if (middle.position == from.position || middle.position == to.position) return false;
+    if (!stays_near(h, middle.position) && middle.kind == VertexKind::kCurve) return false;
+    state_.deviation.replace();
     middle.best_valence = mesh_.is_ghost(t) ? 5 : 6;
     if (middle.kind == VertexKind::kCurve) ++state_.curves.inside(middle.place);
     --state_.splits_left;
@@ -121,6 +125,24 @@ class Splitter {
     return true;
   }
 
+  /// Whether the halves of the faces at h, in the records that they will have, stay near the original.
+  [[nodiscard]] bool stays_near(std::uint32_t h, const DVec3& middle) {
+    if (!state_.deviation.is_set()) return true;
+    gone_.clear();
+    made_.clear();
+    auto made = static_cast<std::uint32_t>(mesh_.face_count());
+    for (const std::uint32_t side : {h, mesh_.twin(h)}) {
+      if (mesh_.is_ghost(side)) continue;
+      const DVec3 &p = state_.position(mesh_.origin(side)), &q = state_.position(mesh_.target(side)),
+                  &a = state_.position(mesh_.origin(RemeshMesh::previous(side)));
+      const std::uint32_t near = state_.original_near(side);
+      gone_.push_back(side / 4);
+      made_.push_back({side / 4, {middle, a, p}, near});
+      made_.push_back({made++, {middle, q, a}, near});
+    }
+    return state_.deviation.allows(gone_, made_);
+  }
+
   /// Whether the two halves of the face at h keep its side.
   [[nodiscard]] bool fits(std::uint32_t h, const DVec3& middle) const {
     const DVec3 &p = state_.position(mesh_.origin(h)), &q = state_.position(mesh_.target(h)),
@@ -133,6 +155,8 @@ class Splitter {
   RemeshState& state_;
   RemeshMesh& mesh_;
   std::vector<Candidate> found_;
+  std::vector<std::uint32_t> gone_;
+  std::vector<DeviationBound::Face> made_;
   bool has_refused_ = false;
 };
 

@@ -1,5 +1,6 @@
 // Swaps of edges, for valences and for angles.
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -54,12 +55,25 @@ std::size_t for_each_edge(RemeshState& state, Body&& body) {
   return swaps;
 }
 
-void apply(RemeshMesh& mesh, const Swap& swap, std::uint32_t h) {
+/// Swaps unless that would part the surface from the original.
+bool apply(RemeshState& state, const Swap& swap, std::uint32_t h) {
+  RemeshMesh& mesh = state.mesh;
+  if (state.deviation.is_set()) {
+    const std::uint32_t t = mesh.twin(h);
+    const DVec3 &p = state.position(swap.p), &q = state.position(swap.q), &a = state.position(swap.a),
+                &b = state.position(swap.b);
+    const std::array gone = {h / 4, t / 4};
+    const std::array<DeviationBound::Face, 2> made = {
+        {{h / 4, {b, a, p}, state.original_near(h)}, {t / 4, {a, b, q}, state.original_near(t)}}};
+    if (!state.deviation.allows(gone, made)) return false;
+    state.deviation.replace();
+  }
   mesh.flip(h);
   --mesh.vertices[swap.p].valence;
   --mesh.vertices[swap.q].valence;
   ++mesh.vertices[swap.a].valence;
   ++mesh.vertices[swap.b].valence;
+  return true;
 }
 
 }  // namespace
@@ -79,8 +93,7 @@ std::size_t swap_for_valence(RemeshState& state) {
     const Swap swap = look_at(state, h);
     if (!swap.keeps_surface || swap.worst_after < std::min(swap.worst_before, kShape15) || !mesh.can_flip(h))
       return false;
-    apply(mesh, swap, h);
-    return true;
+    return apply(state, swap, h);
   });
 }
 
@@ -89,8 +102,7 @@ std::size_t swap_for_angles(RemeshState& state) {
   return for_each_edge(state, [&](std::uint32_t h) {
     const Swap swap = look_at(state, h);
     if (!(swap.worst_after > swap.worst_before) || !swap.keeps_surface || !mesh.can_flip(h)) return false;
-    apply(mesh, swap, h);
-    return true;
+    return apply(state, swap, h);
   });
 }
 

@@ -107,6 +107,31 @@ Remeshed remeshed(const IndexedFaceSet& set, const RemeshOptions& options) {
   return *std::move(result);
 }
 
+/// How many faces look another way than the surface did.
+std::size_t turned_faces(const IndexedFaceSet& before, const Remeshed& r) {
+  const IndexedFaceSet after = set_of(r);
+  std::size_t turned = 0;
+  for (std::size_t f = 0; f < after.face_count(); ++f)
+    turned += dot(test::area_of(after, f), test::area_of(before, r.source_faces[f])) > 0 ? 0 : 1;
+  return turned;
+}
+
+/// The largest distance of points of one mesh, 21 a face, from the other.
+double farthest(const IndexedFaceSet& from, const IndexedFaceSet& to) {
+  const detail::TriangleTree tree(to.points, to.corners);
+  double most2 = 0;
+  std::uint32_t hint = 0;
+  for (std::size_t f = 0; f < from.face_count(); ++f)
+    for (int i = 0; i <= 5; ++i)
+      for (int j = 0; i + j <= 5; ++j) {
+        const auto c = from.face(f);
+        DVec3 p = DVec3(from.points[c[2]]);
+        p += i / 5.0 * (DVec3(from.points[c[0]]) - p) + j / 5.0 * (DVec3(from.points[c[1]]) - p);
+        most2 = std::max(most2, tree.nearest(p, hint));
+      }
+  return std::sqrt(most2);
+}
+
 RemeshOptions with_length(double edge_length) {
   RemeshOptions options;
   options.size.edge_length = Length::absolute(edge_length);
@@ -131,12 +156,12 @@ Angles least_angles(const IndexedFaceSet& set) {
 }  // namespace
 
 TEST_CASE("Remeshing keeps the topology, and makes even triangles on the surface", "[remesh]") {
-  std::map<std::string, IndexedFaceSet> shapes = {{"sphere", test::icosphere(3)},
-                                                  {"torus", test::torus(48, 20)},
-                                                  {"grid", test::grid(20, 15)},
-                                                  {"tube", test::cylinder(16, 24)}};
+  std::map<std::string, IndexedFaceSet> shapes = {{"sphere", test::icosphere(4)},
+                                                  {"torus", test::torus(96, 40)},
+                                                  {"grid", test::grid(40, 30)},
+                                                  {"tube", test::cylinder(32, 48)}};
   for (auto& [name, set] : shapes) {
-    test::jitter(set, 0.01f, 7);
+    test::jitter(set, name == "grid" ? 0.2f : 0.01f, 7);
     const double mean = mean_edge(half_edges(set), set.points);
     for (const double factor : {0.6, 1.0, 1.7}) {
       CAPTURE(name, factor);
@@ -150,29 +175,32 @@ TEST_CASE("Remeshing keeps the topology, and makes even triangles on the surface
       CHECK(r.largest_distance < 1e-5);
       for (std::uint32_t h = 0; h < r.mesh.half_edge_count(); ++h)
         CHECK(length(point_of(set, r.origins[r.corner_origins[h]]) - at(r, r.mesh.origins()[h])) < 1e-5);
-      // No face looks another way than the surface did.
-      std::size_t turned = 0;
-      for (std::size_t f = 0; f < after.face_count(); ++f)
-        turned += dot(test::area_of(after, f), test::area_of(set, r.source_faces[f])) > 0 ? 0 : 1;
-      CHECK(turned == 0);
+      CHECK(turned_faces(set, r) == 0);
       std::size_t in_range = 0, edges = 0;
       r.mesh.for_each_edge([&](HalfEdgeId h) {
         const double l = length(at(r, r.mesh.target(h).index) - at(r, r.mesh.origin(h).index));
-        in_range += l >= 0.75 * factor * mean && l <= 1.4 * factor * mean ? 1 : 0;
+        in_range += l >= 0.8 * factor * mean && l <= 4.0 / 3 * factor * mean ? 1 : 0;
         ++edges;
       });
-      CHECK(static_cast<double>(in_range) >= 0.85 * static_cast<double>(edges));
+      // Rows of a grid whose lengths are within bounds stay rows, and so do those along a straight boundary.
+      const bool is_closed = name == "sphere" || name == "torus";
+      CHECK(static_cast<double>(in_range) >= (is_closed ? 0.95 : 0.86) * static_cast<double>(edges));
       const Angles angles = least_angles(after);
-      CHECK(angles.mean > 46);
-      CHECK(angles.least > 10);
+      CHECK(angles.mean > (is_closed ? 53 : 49));
+      CHECK(angles.least > (is_closed ? 30 : 25));
     }
   }
 }
 
 TEST_CASE("Remeshing keeps handles", "[remesh]") {
   const IndexedFaceSet set = test::double_torus();
-  for (const double factor : {0.5, 1.0, 3.0})
-    remeshed(set, with_length(factor * mean_edge(half_edges(set), set.points)));
+  for (const double factor : {0.2, 0.5, 1.0, 3.0}) {
+    CAPTURE(factor);
+    const Remeshed r = remeshed(set, with_length(factor * mean_edge(half_edges(set), set.points)));
+    // The tube between its halves is folded, and thinner at its waist than any edges: what is left of it
+    // there looks no way. Elsewhere no vertex and no face is taken for one of the leaf behind it.
+    if (factor < 0.3) CHECK(turned_faces(set, r) <= r.mesh.face_count() / 200);
+  }
 }
 
 TEST_CASE("Remeshing twice changes little", "[remesh]") {
@@ -271,6 +299,29 @@ TEST_CASE("Remeshing keeps the boundary bit by bit if asked, and else to a toler
   };
   CHECK(largest(before, after) <= 0.03 + 1e-6);
   CHECK(largest(after, before) <= 1e-5);
+}
+
+TEST_CASE("Remeshing bounds how far the two surfaces part, both ways", "[remesh]") {
+  IndexedFaceSet dented = test::grid(40, 40);
+  for (Vec3& p : dented.points) p.z = 0.7f * std::sin(0.8f * p.x) * std::sin(0.9f * p.y);
+  const std::map<std::string, IndexedFaceSet> shapes = {
+      {"cube", test::fine_cube(12)}, {"torus", test::torus(48, 20)}, {"dented", dented}};
+  for (const auto& [name, set] : shapes) {
+    const double mean = mean_edge(half_edges(set), set.points);
+    for (const double share : {0.1, 0.02}) {
+      CAPTURE(name, share);
+      RemeshOptions options = with_length(1.3 * mean);
+      const IndexedFaceSet unbound = set_of(remeshed(set, options));
+      CHECK(std::max(farthest(set, unbound), farthest(unbound, set)) > share * mean);
+      options.max_deviation = Length::absolute(share * mean);
+      const Remeshed r = remeshed(set, options);
+      const IndexedFaceSet bound = set_of(r);
+      // Between samples it may be a little more, where surfaces are bent as much as here.
+      CHECK(farthest(set, bound) <= 1.1 * share * mean);
+      CHECK(farthest(bound, set) <= 1.1 * share * mean);
+      CHECK(r.splits + r.collapses + r.swaps > 0);
+    }
+  }
 }
 
 TEST_CASE("Remeshing leaves locked vertices where they are", "[remesh]") {
@@ -388,6 +439,9 @@ TEST_CASE("Remeshing refuses what it cannot do with a sentence", "[remesh]") {
   CHECK(code(with_length(1e-30)) == ErrorCode::kUnsuitable);
   options = with_length(1);
   options.curves.tolerance = Length::absolute(-1);
+  CHECK(code(options) == ErrorCode::kUsage);
+  options = with_length(1);
+  options.max_deviation = Length::absolute(0);
   CHECK(code(options) == ErrorCode::kUsage);
   options = with_length(1);
   const std::vector<std::uint32_t> beyond = {static_cast<std::uint32_t>(mesh.half_edge_count())};
