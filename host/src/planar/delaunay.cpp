@@ -7,7 +7,8 @@
 #include <vkmesh/base/exceptions_to_result.h>
 #include <vkmesh/planar/delaunay.h>
 
-#include "base/huge_pages.h"
+#include "base/large_array.h"
+#include "base/prefetch.h"
 #include "math/filtered_predicates.h"
 #include "planar/triangle_mesh.h"
 #include "spatial/hilbert_order.h"
@@ -43,8 +44,8 @@ class Insertion {
   explicit Insertion(std::span<const DVec2> points)
       : points_(points.data()), predicates_(all_in_filter_range(points)) {
     const std::size_t corners = 6 * points.size();  // of 2 n - 2 triangles
-    triangles_.origins = large_vector<std::uint32_t>(corners);
-    triangles_.twins = large_vector<std::uint32_t>(corners);
+    triangles_.origins = LargeArray<std::uint32_t>(corners);
+    triangles_.twins = LargeArray<std::uint32_t>(corners);
   }
 
   /// The first triangle, of three points that turn counter-clockwise.
@@ -53,7 +54,7 @@ class Insertion {
     set_origins(1, {b, a, kInvalid});
     set_origins(2, {c, b, kInvalid});
     set_origins(3, {a, c, kInvalid});
-    count_ = 4;
+    triangles_.count = 4;
     for (std::uint32_t i = 0; i < 3; ++i) {
       triangles_.set_twins(i, 4 * (i + 1));
       triangles_.set_twins(4 * (i + 1) + 2, 4 * ((i + 1) % 3 + 1) + 1);
@@ -68,24 +69,20 @@ class Insertion {
                         m = PlanarTriangles::previous(h);
     if (!place.on_edge) {
       const std::array<Side, 3> sides = {side(h), side(n), side(m)};
-      surround(v, sides, {t, count_, count_ + 1});
-      count_ += 2;
+      surround(v, sides, {t, triangles_.count, triangles_.count + 1});
+      triangles_.count += 2;
       make_delaunay(t, 3);
     } else {
       const std::uint32_t u = triangles_.twin(h);
       const std::array<Side, 4> sides = {side(n), side(m), side(PlanarTriangles::next(u)),
                                          side(PlanarTriangles::previous(u))};
-      surround(v, sides, {t, count_, u >> 2, count_ + 1});
-      count_ += 2;
+      surround(v, sides, {t, triangles_.count, u >> 2, triangles_.count + 1});
+      triangles_.count += 2;
       make_delaunay(t, 4);
     }
   }
 
-  PlanarTriangles take() {
-    triangles_.origins.resize(3 * std::size_t{count_});
-    triangles_.twins.resize(3 * std::size_t{count_});
-    return std::move(triangles_);
-  }
+  PlanarTriangles take() { return std::move(triangles_); }
 
  private:
   struct Place {
@@ -182,7 +179,6 @@ class Insertion {
   const DVec2* points_;
   FilteredPredicates predicates_;
   PlanarTriangles triangles_;
-  std::uint32_t count_ = 0;
   std::uint32_t last_ = 0;  // a triangle where to begin, not at infinity
 };
 
@@ -216,7 +212,14 @@ Result<DelaunayTriangulation> triangulate(std::span<const DVec2> points, const P
   places.reserve(points.size());
   result.vertex_of_point.resize(points.size());
   std::vector<std::uint32_t> order = HilbertOrder::of(points);
-  for (const std::uint32_t i : order) {
+  constexpr std::size_t kAhead = 24;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k + kAhead < order.size()) {
+      const std::uint32_t soon = order[k + kAhead];
+      prefetch(&points[soon]);
+      prefetch(&result.vertex_of_point[soon]);
+    }
+    const std::uint32_t i = order[k];
     if (places.empty() || places.back() != points[i]) {
       order[places.size()] = i;
       places.push_back(points[i]);
@@ -270,9 +273,11 @@ Result<SwappedToDelaunay> swap_all(const HalfEdgeMesh& mesh, std::span<const DVe
       return fail(ErrorCode::kUnsuitable, "face " + std::to_string(f) + " does not turn counter-clockwise");
   // One triangle at infinity stands beyond all boundary edges; nobody asks what lies beyond it.
   PlanarTriangles triangles;
-  triangles.origins.assign(corners.begin(), corners.end());
-  triangles.origins.insert(triangles.origins.end(), 3, kInvalid);
-  triangles.twins.resize(triangles.origins.size(), kInvalid);
+  triangles.count = faces + 1;
+  triangles.origins = LargeArray<std::uint32_t>(corners.size() + 3);
+  triangles.twins = LargeArray<std::uint32_t>(corners.size() + 3);
+  std::copy(corners.begin(), corners.end(), triangles.origins.data());
+  std::fill_n(triangles.origins.data() + corners.size(), 3, kInvalid);
   // Half-edges to look at, and which of them these are. The first are taken first.
   std::vector<std::uint32_t> waiting;
   waiting.reserve(corners.size());

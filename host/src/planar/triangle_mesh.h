@@ -4,16 +4,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include <vkmesh/mesh/half_edge_mesh.h>
+
+#include "base/large_array.h"
 
 namespace vkmesh::detail {
 
 /// Triangles with their twins. Half-edge 4t + i starts at corner i of triangle t, so that shifts find it.
 /// Corners may be kInvalid, the vertex at infinity, in triangles that close the boundary.
 struct PlanarTriangles {
-  std::vector<std::uint32_t> origins, twins;  // three for each triangle
+  LargeArray<std::uint32_t> origins, twins;  // three for each triangle
+  std::uint32_t count = 0;                   // of triangles; there may be room for more
 
   static std::size_t slot(std::uint32_t h) { return h - (h >> 2); }
   static std::uint32_t next(std::uint32_t h) { return (h & ~3u) | (0b00'10'01u >> 2 * (h & 3u) & 3u); }

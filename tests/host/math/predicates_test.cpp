@@ -86,6 +86,18 @@ TEST_CASE("In-circle knows rectangles of any shape, and a last bit", "[predicate
     }
 }
 
+TEST_CASE("In-circle of differences near the largest that machine words hold", "[predicates]") {
+  for (int exponent = 50; exponent < 80; ++exponent) {
+    const double width = std::ldexp(3.0, exponent);
+    const DVec2 a(0, 0), b(width, 0), c(width, 3);
+    CHECK(detail::exact_in_circle(a, b, c, {0, 4}) == -1);
+    CHECK(detail::exact_in_circle(a, b, c, {0, 3}) == 0);
+    CHECK(detail::exact_in_circle(a, b, c, {0, 2}) == 1);
+    CHECK(detail::exact_orientation(a, c, {-width, -4}) == -1);
+    CHECK(detail::exact_orientation(a, c, {-width, -2}) == 1);
+  }
+}
+
 TEST_CASE("The perturbed circle has no fourth point", "[predicates]") {
   // The greatest point is lifted most: it is outside the circle of others, and takes the diagonal from those
   // beside it.
@@ -94,6 +106,9 @@ TEST_CASE("The perturbed circle has no fourth point", "[predicates]") {
   CHECK(in_circle_perturbed(a, b, c, d) == 1);
   CHECK(in_circle_perturbed(b, c, d, a) == -1);
   CHECK(in_circle_perturbed(a, c, d, b) == 1);
+  // The least is no other's opposite here, so that lifting it would give the other diagonal.
+  CHECK(in_circle_perturbed({4, 3}, {3, 4}, {-5, 0}, {5, 0}) == -1);
+  CHECK(in_circle_perturbed({5, 0}, {4, 3}, {3, 4}, {-5, 0}) == 1);
   // An even permutation keeps the sign, an odd one turns it.
   const std::array<DVec2, 4> p = {DVec2(0, 5), DVec2(5, 0), DVec2(4, -3), DVec2(-3, 4)};
   std::array<std::size_t, 4> i = {0, 1, 2, 3};
