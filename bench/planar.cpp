@@ -1,4 +1,5 @@
-// vkmesh_bench_planar [POINTS] [REPETITIONS]: Delaunay triangulations beside CGAL's, as a table in Markdown.
+// vkmesh_bench_planar [POINTS] [REPETITIONS] [FAMILY]: Delaunay triangulations beside CGAL's, as a table in
+// Markdown.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -207,7 +208,7 @@ std::size_t by_cgal_to_arrays(const Points& points) {
 }
 #endif
 
-void all(std::size_t n, int repetitions) {
+void all(std::size_t n, int repetitions, const std::string& only) {
   const Machine machine = describe_machine();
   std::printf("- %s, %s\n- %s", machine.processor.c_str(), machine.system.c_str(), machine.compiler.c_str());
 #ifdef VKMESH_BENCH_CGAL
@@ -219,6 +220,7 @@ void all(std::size_t n, int repetitions) {
       "edges |\n"
       "|---|---|---:|---|---:|---:|---:|---:|\n");
   for (const Family& family : families()) {
+    if (!only.empty() && only != family.name) continue;
     std::mt19937_64 random(1);
     Points points = family.points(n, [&] { return static_cast<double>(random() >> 11) * 0x1p-53; });
     for (std::size_t i = points.size(); i > 1; --i) std::swap(points[i - 1], points[random() % i]);
@@ -257,5 +259,6 @@ int main(int count, char** arguments) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const double points = count > 1 ? std::atof(arguments[1]) : 1e6;
   vkmesh::bench::keep_freed_memory();
-  vkmesh::bench::all(static_cast<std::size_t>(points), count > 2 ? std::max(1, std::atoi(arguments[2])) : 5);
+  vkmesh::bench::all(static_cast<std::size_t>(points), count > 2 ? std::max(1, std::atoi(arguments[2])) : 5,
+                     count > 3 ? arguments[3] : "");
 }
