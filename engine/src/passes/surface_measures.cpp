@@ -11,7 +11,7 @@
 namespace vkmesh {
 namespace {
 
-std::uint32_t blocks_of(std::uint32_t elements) {
+std::uint32_t blocks_of_sums(std::uint32_t elements) {
   return elements / VKMESH_SUM_BLOCK + (elements % VKMESH_SUM_BLOCK != 0 ? 1 : 0);
 }
 
@@ -22,7 +22,7 @@ Result<void> record_bounds(Recorder& recorder, const DeviceMesh& mesh, const Dev
   const Buffer* next = &result.more_block_sums.buffer();
   std::uint32_t vectors = 1;
   for (std::uint32_t elements = mesh.vertex_count(); vectors == 1 || elements > 1; vectors = 2) {
-    const std::uint32_t blocks = blocks_of(elements);
+    const std::uint32_t blocks = blocks_of_sums(elements);
     VKMESH_CHECK(Dispatch<P>(recorder, shaders::bounds_blocks, blocks)
                      .read(&P::source, *source)
                      .write(&P::target, *target)
@@ -39,7 +39,7 @@ Result<void> record_bounds(Recorder& recorder, const DeviceMesh& mesh, const Dev
 Result<void> record_sums(Recorder& recorder, DeviceMesh& mesh, const DeviceSurfaceMeasures& result) {
   const Buffer* source = &result.block_sums.buffer();
   const Buffer* target = &result.more_block_sums.buffer();
-  std::uint32_t elements = blocks_of(mesh.face_count());
+  std::uint32_t elements = blocks_of_sums(mesh.face_count());
   using F = kernels::FaceMeasuresParams;
   VKMESH_CHECK(Dispatch<F>(recorder, shaders::face_measures, elements)
                    .read(&F::positions, mesh.positions())
@@ -50,7 +50,7 @@ Result<void> record_sums(Recorder& recorder, DeviceMesh& mesh, const DeviceSurfa
                    .record());
   using P = kernels::SumBlocksParams;
   while (elements > 1) {
-    const std::uint32_t blocks = blocks_of(elements);
+    const std::uint32_t blocks = blocks_of_sums(elements);
     VKMESH_CHECK(Dispatch<P>(recorder, shaders::sum_blocks, blocks)
                      .read(&P::source, *source)
                      .write(&P::target, *target)
@@ -67,7 +67,7 @@ Result<void> record_sums(Recorder& recorder, DeviceMesh& mesh, const DeviceSurfa
 Result<void> record_surface_measures(Recorder& recorder, DeviceMesh& mesh, DeviceSurfaceMeasures& result) {
   Context& context = recorder.context();
   // Six floats a block of bounds, five a block of sums; each level takes a 64th of the one before.
-  const std::size_t blocks = blocks_of(std::max(mesh.vertex_count(), mesh.face_count()));
+  const std::size_t blocks = blocks_of_sums(std::max(mesh.vertex_count(), mesh.face_count()));
   VKMESH_CHECK(result.raw.resize(context, 1, "surface measures"));
   VKMESH_CHECK(result.block_sums.resize(context, 6 * blocks, "block sums"));
   VKMESH_CHECK(

@@ -431,14 +431,14 @@ Result<bool> SceneMesh::read_inline(const SceneNode& node, const std::string& na
   const std::filesystem::path path = *source_.folder / relative;
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) return dropped("there is no such file");
-  constexpr int kDeepest = 8, kMost = 1000;
+  constexpr int kDeepestInline = 8, kMostInlines = 1000;
   int depth = 0;
   for (const Source* outer = &source_; outer != nullptr; outer = outer->outer, ++depth)
-    if (std::filesystem::equivalent(path, outer->name, code) || depth == kDeepest)
+    if (std::filesystem::equivalent(path, outer->name, code) || depth == kDeepestInline)
       return dropped("files that inline each other");
   int own_count = 0;
   int& count = source_.inlines != nullptr ? *source_.inlines : own_count;
-  if (++count > kMost) return dropped("there are more than " + std::to_string(kMost) + " of them");
+  if (++count > kMostInlines) return dropped("there are more than " + std::to_string(kMostInlines) + " of them");
 
   VKMESH_TRY(const Content content, read_content(path, {}));
   const Progress silent;

@@ -506,13 +506,13 @@ using Rows = std::vector<std::array<float, N>>;
 
 /// Where the `vt` or `vn` of each corner comes from, for the writer.
 template <std::size_t N>
-struct OutAttribute {
+struct ObjAttribute {
   const char* keyword;
   const Channel* of_points = nullptr;
   const Channel* of_corners = nullptr;
   std::vector<std::uint32_t> row_of_corner;  ///< For a corner channel; equal rows are written once.
 
-  OutAttribute(const char* key, const char* channel, const IndexedFaceSet& mesh) : keyword(key) {
+  ObjAttribute(const char* key, const char* channel, const IndexedFaceSet& mesh) : keyword(key) {
     const auto fitting = [&](const std::vector<Channel>& channels) -> const Channel* {
       const Channel* c = find_channel(channels, channel);
       return c != nullptr && c->components == N ? c : nullptr;
@@ -562,8 +562,8 @@ Result<MeshFile> parse_obj(const Source& source) {
 }
 
 void encode_obj(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
-  OutAttribute<2> uv("vt", "uv", mesh);
-  OutAttribute<3> normal("vn", "normal", mesh);
+  ObjAttribute<2> uv("vt", "uv", mesh);
+  ObjAttribute<3> normal("vn", "normal", mesh);
   const Channel* color = find_channel(mesh.point_channels, "color");
   if (color != nullptr && color->components != 3 && color->components != 4) color = nullptr;
   if (color != nullptr && color->components == 4)
