@@ -59,3 +59,9 @@ done
 "$vkmesh" optimize "$work/tenth.ply" "$work/swapped.ply" --max-relative-deviation 2e-4 --quiet
 "$vkmesh" render "$work/tenth.ply" "$work/swapped.ply" "$out/swaps_quality.png" --size 480x400 --color quality \
   --style flat --caption "dragon, 10 %" --caption "max-min angle, at most 0.02 % off"
+
+# Remeshing, with creases kept.
+"$vkmesh" remesh "$cgal/meshes/fandisk.off" "$work/even.ply" --edge-length 0.04 --keep-creases 40 --quiet
+"$vkmesh" remesh "$cgal/meshes/fandisk.off" "$work/adaptive.ply" --relative-adaptive 5e-4 --keep-creases 40 --quiet
+"$vkmesh" render "$cgal/meshes/fandisk.off" "$work/even.ply" "$work/adaptive.ply" "$out/remeshing.png" --size 420x380 \
+  --columns 3 --style shaded-wire --caption before --caption "edges of 0.04" --caption "by curvature"

@@ -28,9 +28,10 @@ class DeviationBound {
   explicit DeviationBound(const OriginalSurface& surface) : surface_(surface) {}
   DeviationBound(const OriginalSurface& surface, double most);
 
-  /// How far samples may be apart, as a share of what surfaces may: where an edge of one passes over an edge
-  /// of the other the gap is a tent, of which the samples at the quarters of an edge see four fifths or more.
-  static constexpr double kAtSamples = 0.8;
+  /// How far samples may be apart, as a share of what surfaces may. Between them they are farther apart:
+  /// where edges of both cross, the gap is a tent of which the quarters of an edge see four fifths or more,
+  /// and folds take the rest.
+  static constexpr double kAtSamples = 0.7;
 
   [[nodiscard]] bool is_set() const { return most2_ > 0; }
   /// Whether `made` may take the place of the faces of these numbers. O(samples × faces).

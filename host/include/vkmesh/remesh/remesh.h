@@ -47,11 +47,12 @@ struct RemeshOptions {
   RemeshSize size;
   RemeshCurves curves;
   std::span<const std::uint32_t> locked;  ///< Vertices that stay where they are. In any order.
-  /// How far the surface may part from that of the input, both ways; above 0. Default any. Where the input bends
+  /// How far the surface may part from that of the input, both ways; above 0. It is seen at samples, with a
+  /// margin for what lies between. Default any. Where the input bends
   /// so that edges of the length asked for cannot hold it, its own triangles stay.
   std::optional<Length> max_deviation;
-  unsigned iterations = 10;               ///< Default 10.
-  std::optional<double> seconds;          ///< No step begins after so many. Default none.
+  unsigned iterations = 10;       ///< Default 10.
+  std::optional<double> seconds;  ///< No step begins after so many. Default none.
 };
 
 enum class RemeshStop {
