@@ -13,7 +13,7 @@
 namespace vkmesh::detail {
 namespace {
 
-constexpr const char* kNames[] = {"normal", "uv", "color"};
+constexpr const char* kAttributeNames[] = {"normal", "uv", "color"};
 constexpr const char* kPlurals[] = {"normals", "texture coordinates", "colours"};
 
 /// The matrix whose columns are the cross products of the others': the transposed inverse but for its scale,
@@ -438,7 +438,8 @@ Result<bool> SceneMesh::read_inline(const SceneNode& node, const std::string& na
       return dropped("files that inline each other");
   int own_count = 0;
   int& count = source_.inlines != nullptr ? *source_.inlines : own_count;
-  if (++count > kMostInlines) return dropped("there are more than " + std::to_string(kMostInlines) + " of them");
+  if (++count > kMostInlines)
+    return dropped("there are more than " + std::to_string(kMostInlines) + " of them");
 
   VKMESH_TRY(const Content content, read_content(path, {}));
   const Progress silent;
@@ -567,10 +568,10 @@ void SceneMesh::keep(std::size_t which, Notes& notes) {
     face += shape.faces;
   }
   if (left_out > 0)
-    notes.push_back({std::string("dropped.") + kNames[which],
+    notes.push_back({std::string("dropped.") + kAttributeNames[which],
                      std::string(kPlurals[which]) + " of " + std::to_string(left_out) +
                          " point sets ignored: the faces have them in another way"});
-  Channel channel{kNames[which], components, std::move(values)};
+  Channel channel{kAttributeNames[which], components, std::move(values)};
   if (which == kColor && bytes) {
     std::vector<std::uint8_t> rounded(channel.scalar_count());
     for (std::size_t i = 0; i < rounded.size(); ++i) rounded[i] = color_byte(channel, i);
@@ -598,7 +599,7 @@ Result<IndexedFaceSet> SceneMesh::finish(const IgnoredNodes& ignored, Notes& not
   for (std::size_t which = 0; which < 3; ++which) keep(which, notes);
   for (std::size_t which = 0; which < 3; ++which)
     if (dropped_[which] > 0)
-      notes.push_back({std::string("skipped.") + kNames[which],
+      notes.push_back({std::string("skipped.") + kAttributeNames[which],
                        std::string(kPlurals[which]) + " of " + std::to_string(dropped_[which]) +
                            " shapes ignored: there are too few for them"});
   note_small_faces(notes, small_faces_);
