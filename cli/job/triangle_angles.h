@@ -11,7 +11,7 @@
 namespace vkmesh::cli {
 
 [[nodiscard]] Json json_of(const TriangleAngles& angles);
-/// Of so many triangles.
+/// `faces`: how many triangles.
 [[nodiscard]] std::string text_of(const TriangleAngles& angles, std::size_t faces);
 
 }  // namespace vkmesh::cli

@@ -52,7 +52,7 @@ class DeviationBound {
   std::vector<DVec3> points_;
   // Lists of the samples of each face: the first, and for each the next.
   std::vector<std::uint32_t> first_, next_;
-  // Of the last question.
+  // What the last question has looked at; kept for its memory.
   std::vector<std::uint32_t> gone_, samples_, faces_of_samples_;
 };
 

@@ -34,8 +34,7 @@ enum class VertexKind : std::uint32_t {
 struct RemeshVertex {
   DVec3 position;
   std::uint32_t leading;  // for the mesh
-  /// Of a free one the face of the original where it is, of one on a curve that, of a fixed one the vertex of
-  /// the input.
+  /// Where it is on the original: a face if it is free, a curve if it lies on one, a vertex if it is fixed.
   std::uint32_t place;
   double along;  // a curve
   float length;  // that edges are to have here

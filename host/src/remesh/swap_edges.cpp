@@ -9,7 +9,7 @@
 namespace vkmesh::detail {
 namespace {
 
-/// Of the two faces at an edge and the two that a swap makes of them.
+/// An edge that may swap, with a measure of its two faces and of the two that would take their place.
 struct Swap {
   std::uint32_t p, q, a, b;  // the edge p → q becomes b → a
   double worst_before, worst_after;

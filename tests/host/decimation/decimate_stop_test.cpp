@@ -180,7 +180,7 @@ TEST_CASE(
       };
       REQUIRE(decimated({}));
       const int questions = test::g_questions;
-      // Of the setup a few; the more of it may pass unasked, the fewer.
+      // The setup asks a few times; the fewer, the more of it may pass unasked.
       CHECK(questions > 30);
       bool unchanged = false, changed = false;
       for (int n = 1; n < questions; n += 1 + n / 16) {
@@ -226,7 +226,7 @@ TEST_CASE(
 TEST_CASE("decimation: every long step before the first removal asks all along, and ends where it is told to",
           "[decimate]") {
   using namespace detail;
-  // Of so many faces that the parts between two questions are few of them.
+  // So many faces that those between two questions are few of them.
   const IndexedFaceSet mesh = test::grid(256, 256);
   const auto vertices = static_cast<std::uint32_t>(mesh.points.size());
   // The same in an order without locality.

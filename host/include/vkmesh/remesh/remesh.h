@@ -80,7 +80,7 @@ struct Remeshed {
   /// For each face one of the input that is nearest to its middle, on its own side of curves.
   std::vector<std::uint32_t> source_faces;
   double edge_length = 0;       ///< What was asked for in the end; of sizes by curvature the longest.
-  double largest_distance = 0;  ///< Of a vertex from the surface of the input.
+  double largest_distance = 0;  ///< From a vertex to the surface of the input.
   std::size_t splits = 0, collapses = 0, swaps = 0;
   RemeshStop stop = RemeshStop::kDone;
 };

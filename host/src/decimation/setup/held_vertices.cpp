@@ -55,7 +55,7 @@ class Components {
   [[nodiscard]] std::size_t vertices(std::size_t part) const { return vertices_[part]; }
   [[nodiscard]] std::size_t locked(std::size_t part) const { return locked_[part]; }
 
-  /// Of numbers that ascend.
+  /// Those of the given numbers, which ascend.
   [[nodiscard]] std::vector<Part> parts(std::span<const std::uint32_t> chosen) const {
     std::vector<std::uint32_t> place(count(), kInvalid);
     for (std::uint32_t i = 0; i < chosen.size(); ++i) place[chosen[i]] = i;

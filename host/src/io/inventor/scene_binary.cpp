@@ -29,7 +29,7 @@ enum class Layout {
 
 struct ValueType {
   Layout layout = Layout::kOther;
-  unsigned words = 0;     ///< Of one value, where it has a fixed length.
+  unsigned words = 0;     ///< One value's, where it has a fixed length.
   bool multiple = false;  ///< A word with the number of values stands before them.
 };
 

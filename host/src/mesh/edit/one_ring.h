@@ -64,17 +64,20 @@ class RingWalks {
   template <class Visit, class GiveUp>
   void walk(const EditFaces& mesh, Visit&& visit, GiveUp&& give_up) {
     const EditFaces::Face* const faces = mesh.faces();
-    for (std::uint32_t number = 0; !walks_.empty() && number < max_steps_; ++number) {
-      std::size_t kept = 0;
-      for (const auto [at, last, target] : walks_) {
+    std::size_t count = walks_.size();
+    for (std::uint32_t number = 0; count > 0 && number < max_steps_; ++number) {
+      Walk* kept = walks_.data();
+      for (const Walk *walk = kept, *const end = walk + count; walk != end; ++walk) {
+        const auto [at, last, target] = *walk;
         const RingStep step = RingStep::from(faces, at);
         prefetch(&faces[step.edge >> 2]);
         const bool goes_on = visit(*target, number, step, step.edge == last);
-        walks_[kept] = {step.edge, last, target};
+        *kept = {step.edge, last, target};
         kept += static_cast<std::size_t>(step.edge != last) & static_cast<std::size_t>(goes_on);
       }
-      walks_.resize(kept);
+      count = static_cast<std::size_t>(kept - walks_.data());
     }
+    walks_.resize(count);
     for (const Walk& too_long : walks_) give_up(*too_long.target);
     walks_.clear();
   }
