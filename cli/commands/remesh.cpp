@@ -260,7 +260,7 @@ void add_remesh(CLI::App& app, Program& program) {
           ->check(number_between(kLeast, kMost)),
       command->add_option("--faces", choice->faces, "So many triangles, to within some percent")
           ->type_name("N")
-          ->check(count_up_to(std::numeric_limits<std::uint32_t>::max())),
+          ->check(count_between(1, std::numeric_limits<std::uint32_t>::max())),
       command
           ->add_option("--adaptive", choice->adaptive,
                        "Lengths by curvature, such that an arc lies by at most this off its chord, in units\n"

@@ -494,11 +494,18 @@ CLI::Validator number_between(double low, double high) {
 }
 
 CLI::Validator count_up_to(std::uint64_t high) {
-  const auto check = [high](std::string& text) {
+  return count_between(0, high);
+}
+
+CLI::Validator count_between(std::uint64_t low, std::uint64_t high) {
+  const auto check = [low, high](std::string& text) {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool good = error == std::errc() && end == text.data() + text.size() && value <= high;
-    return good ? std::string() : "'" + text + "' is no whole number between 0 and " + std::to_string(high);
+    const bool good =
+        error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+    return good ? std::string()
+                : "'" + text + "' is no whole number between " + std::to_string(low) + " and " +
+                      std::to_string(high);
   };
   return CLI::Validator(check, "");
 }

@@ -204,9 +204,11 @@ template <class Enum>
 [[nodiscard]] std::optional<Length> length_of(const std::optional<double>& absolute,
                                               const std::optional<double>& relative);
 
-/// For options: a number in [low, high], which "nan" is not; a number of decimal digits, at most `high`.
+/// For options: a number in [low, high], which "nan" is not; whole numbers of decimal digits, at most `high`
+/// or in [low, high].
 [[nodiscard]] CLI::Validator number_between(double low, double high);
 [[nodiscard]] CLI::Validator count_up_to(std::uint64_t high);
+[[nodiscard]] CLI::Validator count_between(std::uint64_t low, std::uint64_t high);
 
 /// Prints an error that no Job stands for: the sentence on standard error, and the object on standard output.
 void print_error(const Error& error, bool json);

@@ -96,7 +96,7 @@ TEST_CASE("remesh refuses what is out of range, and says so") {
   for (const Case& one :
        {Case{{"--edge-length", "0"}, "--edge-length"}, Case{{"--edge-length", "-1"}, "--edge-length"},
         Case{{"--edge-length", "nan"}, "--edge-length"}, Case{{"--faces", "x"}, "--faces"},
-        Case{{"--edge-length", "1", "--faces", "5"}, "--edge-length"},
+        Case{{"--faces", "0"}, "--faces"}, Case{{"--edge-length", "1", "--faces", "5"}, "--edge-length"},
         Case{{"--max-deviation", "0"}, "--max-deviation"},
         Case{{"--max-deviation", "1", "--max-relative-deviation", "1"}, "--max-relative-deviation"},
         Case{{"--min-edge-length", "1"}, "--min-edge-length"}, Case{{"--lock", "mark"}, "mark"},
