@@ -67,6 +67,7 @@ struct Source {
   const Source* outer = nullptr;                  ///< The file that inlines this one.
   int* inlines = nullptr;                         ///< How many files were inlined, of all that are read.
   bool has_lines = true;                          ///< False: bad_line() tells the byte.
+  bool planar = false;                            ///< As ReadOptions has it.
 
   /// kUnreadable at the line that holds `at`.
   [[nodiscard]] tl::unexpected<Error> bad_line(const char* at, std::string message) const;
@@ -154,7 +155,7 @@ bool to_canonical_color(Channel& channel);
 [[nodiscard]] std::uint64_t stl_binary_size(std::string_view bytes);
 /// How many letters of `word` are the keyword of OFF, which some files glue to the first count; 0 for none.
 [[nodiscard]] std::size_t off_keyword(std::string_view word);
-/// Lines of three to ten numbers: points, with normals or colours.
+/// Lines of three (or, where these are enough, two) to ten numbers: points, with normals or colours.
 [[nodiscard]] Result<MeshFile> parse_xyz(const Source& source);
 /// Whether the first line with content is that of an XYZ file.
 [[nodiscard]] bool is_xyz(std::string_view bytes);

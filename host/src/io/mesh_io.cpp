@@ -375,6 +375,7 @@ Result<MeshFile> parse_content(Source source, const ReadOptions& options) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (source.bytes.starts_with(kByteOrderMark)) source.bytes.remove_prefix(kByteOrderMark.size());
   source.offset = options.offset;
+  source.planar = options.planar;
   int inlines = 0;
   source.inlines = &inlines;
   Positions positions(source.offset);

@@ -59,6 +59,8 @@ struct ReadOptions {
   /// (map coordinates), and `offset` is 0: subtract an offset on a grid of powers of two, exactly, and return
   /// it in MeshFile::offset. Without this, positions are rounded where they are, and a note tells the error.
   bool find_offset = false;
+  /// XYZ: take lines of two numbers, too, as points whose z is 0.
+  bool planar = false;
 };
 
 /// Reads a file of any known format. The content decides the format, the extension only where the content

@@ -1,5 +1,6 @@
-// XYZ point files: a point to a line, as three numbers, which a normal or a colour may follow. No standard
-// describes them; these are the forms that scanners and CloudCompare write.
+// XYZ point files: a point to a line, as three numbers, which a normal or a colour may follow; or two numbers
+// where no heights are asked for. A line of names that begins with x and y may stand first. No standard
+// describes them; these are the forms that scanners, CloudCompare and tables (CSV) have.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,6 +40,28 @@ std::vector<double> numbers_of(TextCursor& text) {
   return numbers;
 }
 
+/// Skips a first line of the names of columns, "x,y,z" or "//X Y Z R G B", which are not read further.
+void skip_header(TextCursor& text) {
+  text.skip_to_content();
+  TextCursor line = text;
+  const auto skip_quote = [&] { return line.accept('"') || line.accept('\''); };
+  if (line.accept('/')) static_cast<void>(line.accept('/'));
+  for (const char* name : {"xX", "yY"}) {
+    line.skip_blanks();
+    skip_quote();
+    if (!line.accept(name[0]) && !line.accept(name[1])) return;
+    skip_quote();
+    const char* const end = line.at();
+    if (!skip_separator(line)) {
+      if (name[0] == 'x') return;
+    } else if (line.at() == end) {
+      return;
+    }
+  }
+  text = line;
+  text.skip_to_line_end();
+}
+
 bool are_unit_vectors(const std::vector<float>& values) {
   for (std::size_t i = 0; i + 2 < values.size(); i += 3)
     if (!(std::abs(std::hypot(values[i], values[i + 1], values[i + 2]) - 1) < 0.01f)) return false;
@@ -54,8 +77,9 @@ bool are_bytes(const std::vector<float>& values) {
 
 bool is_xyz(std::string_view bytes) {
   TextCursor text(bytes, '#');
+  skip_header(text);
   text.skip_to_content();
-  return numbers_of(text).size() >= 3 && text.line_done();
+  return numbers_of(text).size() >= 2 && text.line_done();
 }
 
 Result<MeshFile> parse_xyz(const Source& source) {
@@ -64,6 +88,8 @@ Result<MeshFile> parse_xyz(const Source& source) {
   IndexedFaceSet mesh;
   NonFinitePoints not_finite;
   TextCursor text(source.bytes, '#');
+  skip_header(text);
+  const std::size_t least = source.planar ? 2 : 3;
   std::size_t width = 0;
   std::vector<float> columns;  // Those behind the position, `width - 3` for each point.
   for (std::size_t i = 0;; ++i) {
@@ -73,13 +99,17 @@ Result<MeshFile> parse_xyz(const Source& source) {
     const char* line = text.at();
     const std::vector<double> numbers = numbers_of(text);
     if (i == 0) width = numbers.size();
-    if (numbers.size() < 3 || numbers.size() != width || !text.line_done())
-      return source.bad_line(line, "expected " + (width < 3 ? "3 to 10" : std::to_string(width)) +
-                                       " numbers of a point, found " +
-                                       TextCursor(std::string_view(line, text.left())).found());
+    if (numbers.size() < least || numbers.size() != width || !text.line_done()) {
+      std::string found = numbers.empty() ? TextCursor(std::string_view(line, text.left())).found()
+                                          : std::to_string(numbers.size());
+      if (numbers.size() == 2 && i == 0) found += ": points in the plane, which have no heights";
+      return source.bad_line(
+          line, "expected " + (width < least ? std::to_string(least) + " to 10" : std::to_string(width)) +
+                    " numbers of a point, found " + found);
+    }
     if (mesh.points.size() == kMaxElements)
       return source.bad_line(line, "there are more points than 32-bit indices can number");
-    const Vec3 point = source.positions->place(DVec3(numbers[0], numbers[1], numbers[2]));
+    const Vec3 point = source.positions->place(DVec3(numbers[0], numbers[1], width > 2 ? numbers[2] : 0.0));
     if (!all_finite(point)) not_finite.add(i, line);
     mesh.points.push_back(point);
     for (std::size_t k = 3; k < width; ++k) columns.push_back(static_cast<float>(numbers[k]));
