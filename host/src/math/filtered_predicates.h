@@ -2,8 +2,10 @@
 // exact arithmetic out of line.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <vkmesh/math/predicates.h>
 
@@ -23,6 +25,10 @@ namespace vkmesh::detail {
 }
 [[nodiscard]] inline bool in_filter_range(DVec2 p) {
   return in_filter_range(p.x) && in_filter_range(p.y);
+}
+
+[[nodiscard]] inline bool all_in_filter_range(std::span<const DVec2> points) {
+  return std::all_of(points.begin(), points.end(), [](DVec2 p) { return in_filter_range(p); });
 }
 
 /// Predicates of points whose range is known.

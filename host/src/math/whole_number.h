@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace vkmesh::detail {
 
@@ -35,6 +38,15 @@ class WholeNumber {
 
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : negative_ ? -1 : 1; }
 
+  /// a / b times 2^`exponent`, off by less than 0.51 units in the last place of a normal result. b is not 0.
+  [[nodiscard]] static double quotient(const WholeNumber& a, const WholeNumber& b, int exponent) {
+    if (a.size_ == 0) return 0;
+    const auto [a_bits, a_exponent] = a.leading();
+    const auto [b_bits, b_exponent] = b.leading();
+    const auto size = static_cast<double>((Wide{a_bits} << 63) / b_bits);
+    return std::ldexp(a.negative_ == b.negative_ ? size : -size, a_exponent - b_exponent - 63 + exponent);
+  }
+
   friend WholeNumber operator+(const WholeNumber& a, const WholeNumber& b) { return sum(a, b, b.negative_); }
   friend WholeNumber operator-(const WholeNumber& a, const WholeNumber& b) { return sum(a, b, !b.negative_); }
   friend WholeNumber operator*(const WholeNumber& a, const WholeNumber& b) {
@@ -58,6 +70,13 @@ class WholeNumber {
  private:
   using Wide = unsigned __int128;
 
+  /// The 64 first bits of the size, which is not 0, and how many follow.
+  [[nodiscard]] std::pair<std::uint64_t, int> leading() const {
+    const std::uint64_t top = words_[size_ - 1], below = size_ > 1 ? words_[size_ - 2] : 0;
+    const int zeros = std::countl_zero(top);
+    return {zeros == 0 ? top : top << zeros | below >> (64 - zeros),
+            64 * (static_cast<int>(size_) - 1) - zeros};
+  }
   void trim() {
     while (size_ > 0 && words_[size_ - 1] == 0) --size_;
   }

@@ -19,10 +19,6 @@ namespace {
 
 constexpr std::size_t kMostPoints = (std::size_t{1} << 29) - 2;
 
-bool all_in_filter_range(std::span<const DVec2> points) {
-  return std::all_of(points.begin(), points.end(), [](DVec2 p) { return in_filter_range(p); });
-}
-
 bool is_finite(DVec2 p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
 }
