@@ -30,6 +30,7 @@ void add_optimize(CLI::App& app, Program& program);
 void add_simplify(CLI::App& app, Program& program);
 void add_remesh(CLI::App& app, Program& program);
 void add_delaunay(CLI::App& app, Program& program);
+void add_voronoi(CLI::App& app, Program& program);
 void add_render(CLI::App& app, Program& program);
 void add_compare(CLI::App& app, Program& program);
 void add_bench(CLI::App& app, Program& program);

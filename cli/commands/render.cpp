@@ -1,7 +1,6 @@
 // vkmesh render: pictures of meshes, and contact sheets of several.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -61,29 +60,9 @@ struct Plan {
   std::optional<DVec3> eye, target;
 };
 
-/// "1,2.5,-3" as so many numbers, separated by `separator`.
-Result<std::vector<double>> numbers(const std::string& text, char separator, std::size_t count,
-                                    const std::string& option) {
-  std::vector<double> values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (values.size() < count) {
-    double value = 0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value)) break;
-    values.push_back(value);
-    at = next;
-    if (values.size() == count || at == end || *at != separator) break;
-    ++at;
-  }
-  if (values.size() == count && at == end) return values;
-  return fail(ErrorCode::kUsage, option + ": '" + text + "' is not " + std::to_string(count) +
-                                     " numbers with '" + separator + "' between them");
-}
-
 Result<Plan> plan_of(const RenderOptions& options) {
   Plan plan;
-  VKMESH_TRY(const std::vector<double> size, numbers(options.size, 'x', 2, "--size"));
+  VKMESH_TRY(const std::vector<double> size, parse_numbers(options.size, 'x', 2, "--size"));
   for (const double side : size)
     if (side != std::floor(side) || side < 1 || side > kMaxPictureSide)
       return fail(ErrorCode::kUsage, "--size: a picture has between 1 and " +
@@ -93,14 +72,14 @@ Result<Plan> plan_of(const RenderOptions& options) {
   plan.height = static_cast<std::uint32_t>(size[1]);
   VKMESH_TRY(plan.background, parse_color(options.background));
   if (!options.range.empty()) {
-    VKMESH_TRY(const std::vector<double> range, numbers(options.range, ':', 2, "--range"));
+    VKMESH_TRY(const std::vector<double> range, parse_numbers(options.range, ':', 2, "--range"));
     if (!(range[0] < range[1]))
       return fail(ErrorCode::kUsage, "--range: the first number must be below the second");
     plan.range = ValueRange{range[0], range[1]};
   }
   const auto point = [](const std::string& text, const char* option) -> Result<std::optional<DVec3>> {
     if (text.empty()) return std::optional<DVec3>();
-    VKMESH_TRY(const std::vector<double> xyz, numbers(text, ',', 3, option));
+    VKMESH_TRY(const std::vector<double> xyz, parse_numbers(text, ',', 3, option));
     return std::optional<DVec3>(DVec3(xyz[0], xyz[1], xyz[2]));
   };
   VKMESH_TRY(plan.eye, point(options.eye, "--eye"));

@@ -239,7 +239,7 @@ Result<IndexedFaceSet> Job::read() {
 }
 
 ReadOptions Job::read_options() {
-  return {progress("reading"), offset_, !has_read_};
+  return {progress("reading"), offset_, !has_read_, options_.planar};
 }
 
 Result<void> Job::note_differences(const std::string& file, const std::vector<FileNote>& notes) {
@@ -258,6 +258,11 @@ Result<void> Job::check_output() {
   VKMESH_TRY(write_options_, write_options_for(options_.output));
   write_options_.comment = "made by vkmesh " VKMESH_VERSION;
   return check_place(options_.output);
+}
+
+Result<void> Job::check_output_or_picture() {
+  draws_ = fs::path(options_.output).extension() == ".svg";
+  return draws_ ? check_place(options_.output) : check_output();
 }
 
 Result<void> check_place(const std::string& file) {
@@ -359,6 +364,21 @@ Result<void> Job::write(const IndexedFaceSet& mesh, bool ascii) {
   const auto& w = write_options_;
   json_["output"] = counts_of(mesh, options_.output, w.format, w.encoding, w.gzip);
   row("output", file_row(mesh, options_.output, w.format, w.encoding, w.gzip));
+  return {};
+}
+
+Result<void> Job::write(SvgPicture picture) {
+  picture.offset = {offset_.x, offset_.y};
+  picture.comment = "made by vkmesh " VKMESH_VERSION;
+  VKMESH_CHECK(timed("write", [&] { return write_svg(options_.output, picture); }));
+  const std::size_t faces =
+      picture.face_offsets.empty() ? picture.corners.size() / 3 : picture.face_offsets.size() - 1;
+  json_["output"] = {{"file", options_.output},           {"format", "svg"},
+                     {"points", picture.points.size()},   {"faces", faces},
+                     {"corners", picture.corners.size()}, {"circles", picture.circles.size()},
+                     {"dots", picture.dots.size()}};
+  row("output", options_.output + "  (" + count_of(picture.points.size(), "point") + ", " +
+                    count_of(faces, "face") + "; svg)");
   return {};
 }
 
@@ -473,6 +493,25 @@ Result<std::pair<std::string, double>> named_weight(const std::string& option, c
   if (error != std::errc() || end != text.data() + text.size() || !(weight >= 0 && std::isfinite(weight)))
     return fail(ErrorCode::kUsage, option + " " + text + ": the weight must be a number of at least 0");
   return std::pair(text.substr(0, equals), weight);
+}
+
+Result<std::vector<double>> parse_numbers(const std::string& text, char separator, std::size_t count,
+                                          const std::string& option) {
+  std::vector<double> values;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (values.size() < count) {
+    double value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) break;
+    values.push_back(value);
+    at = next;
+    if (values.size() == count || at == end || *at != separator) break;
+    ++at;
+  }
+  if (values.size() == count && at == end) return values;
+  return fail(ErrorCode::kUsage, option + ": '" + text + "' is not " + std::to_string(count) +
+                                     " numbers with '" + separator + "' between them");
 }
 
 std::optional<Length> length_of(const std::optional<double>& absolute,

@@ -20,6 +20,7 @@
 #include <vkmesh/base/progress.h>
 #include <vkmesh/base/result.h>
 #include <vkmesh/io/mesh_io.h>
+#include <vkmesh/io/svg.h>
 #include <vkmesh/math/length.h>
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/repair/consolidate.h>
@@ -41,6 +42,7 @@ struct CommonOptions {
   std::string on_loss = "note";
   ConsolidateOptions consolidation;
   bool keep_splits = false;
+  bool planar = false;  // heights of points are not asked for
 };
 
 /// After this, interrupt and termination signals make interrupted() true, and a closed pipe is an ordinary
@@ -110,6 +112,10 @@ class Job {
   /// Finds out whether the output can be written at all, before time is spent on it. No output given: no
   /// error.
   [[nodiscard]] Result<void> check_output();
+  /// The same for a subcommand that draws, too: the output may be an SVG.
+  [[nodiscard]] Result<void> check_output_or_picture();
+  [[nodiscard]] bool draws() const { return draws_; }
+  [[nodiscard]] FileFormat output_format() const { return write_options_.format; }
   /// Makes the mesh an oriented manifold, as the options of add_consolidate_options() say, and reports what
   /// was done. The half-edges are those of its faces.
   [[nodiscard]] Result<HalfEdgeMesh> consolidate(IndexedFaceSet& mesh);
@@ -123,6 +129,9 @@ class Job {
   [[nodiscard]] Result<HalfEdgeMesh> consolidate_again(IndexedFaceSet& triangles);
   /// Writes the output, and reports its counts.
   [[nodiscard]] Result<void> write(const IndexedFaceSet& mesh, bool ascii = false);
+
+  /// Writes the output as an SVG, and reports its counts.
+  [[nodiscard]] Result<void> write(SvgPicture picture);
 
   /// A sentence about something that was left out or not used.
   void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
@@ -161,6 +170,7 @@ class Job {
   std::vector<std::string>
       split_channels_;     ///< Belong to points in the file, to corners while it is worked on.
   bool has_read_ = false;  ///< The offset is settled.
+  bool draws_ = false;     ///< The output is an SVG.
   std::vector<std::pair<std::string, std::string>> rows_;
   std::vector<std::string> notes_;
   Json json_;
@@ -183,6 +193,10 @@ void add_keep_splits(CLI::App& command, CommonOptions& options);
 [[nodiscard]] Result<std::pair<std::string, double>> named_weight(const std::string& option,
                                                                   const std::string& text,
                                                                   double default_weight);
+
+/// "1,2.5,-3" as so many numbers, separated by `separator`; errors name the option.
+[[nodiscard]] Result<std::vector<double>> parse_numbers(const std::string& text, char separator,
+                                                        std::size_t count, const std::string& option);
 
 /// Turns a name into the value that it stands for, and refuses what is none of them.
 template <class Enum>

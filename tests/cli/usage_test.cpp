@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> kCommands = {"info",    "convert",  "normals",  "creases", "curvature",
                                             "smooth",  "optimize", "simplify", "remesh",  "delaunay",
-                                            "compare", "digest",   "devices"};
+                                            "voronoi", "compare",  "digest",   "devices"};
 
 /// The words of each line after "Example:" or "Examples:", the program's name aside.
 std::vector<std::vector<std::string>> examples_of(const std::string& help) {
