@@ -1,5 +1,5 @@
-// vkmesh_bench_planar [POINTS] [REPETITIONS] [FAMILY]: Delaunay triangulations beside CGAL's, as a table in
-// Markdown.
+// vkmesh_bench_planar [POINTS] [REPETITIONS] [FAMILY] [THREADS]: Delaunay triangulations beside CGAL's and
+// Voronoi diagrams beside Boost.Polygon's, as a table in Markdown.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -17,6 +17,7 @@
 #include <tbb/global_control.h>
 
 #include <vkmesh/planar/delaunay.h>
+#include <vkmesh/planar/voronoi.h>
 
 #ifdef VKMESH_BENCH_CGAL
 #include <CGAL/Delaunay_triangulation_2.h>
@@ -24,6 +25,10 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/version.h>
+#endif
+
+#ifdef VKMESH_BENCH_BOOST
+#include <boost/polygon/voronoi.hpp>
 #endif
 
 #include "bench/machine.h"
@@ -208,16 +213,32 @@ std::size_t by_cgal_to_arrays(const Points& points) {
 }
 #endif
 
-void all(std::size_t n, int repetitions, const std::string& only) {
+#ifdef VKMESH_BENCH_BOOST
+/// Of whole numbers, which is what it takes: 30 bits for each coordinate. Its rays are not clipped.
+std::size_t by_boost(const Points& points) {
+  const std::vector<DVec2> bounds = bounds_of_sites(points);
+  const double scale = 0x1p30 / std::max(bounds[2].x - bounds[0].x, bounds[2].y - bounds[0].y);
+  std::vector<boost::polygon::point_data<std::int32_t>> input;
+  input.reserve(points.size());
+  for (const DVec2 p : points)
+    input.emplace_back(static_cast<std::int32_t>(scale * (p.x - bounds[0].x)),
+                       static_cast<std::int32_t>(scale * (p.y - bounds[0].y)));
+  boost::polygon::voronoi_diagram<double> made;
+  boost::polygon::construct_voronoi(input.begin(), input.end(), &made);
+  return made.num_cells();
+}
+#endif
+
+void all(std::size_t n, int repetitions, const std::string& only, std::size_t threads) {
   const Machine machine = describe_machine();
   std::printf("- %s, %s\n- %s", machine.processor.c_str(), machine.system.c_str(), machine.compiler.c_str());
 #ifdef VKMESH_BENCH_CGAL
   std::printf(", CGAL " CGAL_VERSION_STR);
 #endif
-  std::printf("\n- one thread, %zu points in random order\n\n", n);
+  std::printf("\n- %zu %s, %zu points in random order\n\n", threads, threads == 1 ? "thread" : "threads", n);
   std::printf(
-      "| points | what | median s | min-max (runs) | ns a point | most bytes a point | triangles | wrong "
-      "edges |\n"
+      "| points | what | median s | min-max (runs) | ns a point | most bytes a point | triangles or cells | "
+      "wrong edges |\n"
       "|---|---|---:|---|---:|---:|---:|---:|\n");
   for (const Family& family : families()) {
     if (!only.empty() && only != family.name) continue;
@@ -249,6 +270,18 @@ void all(std::size_t n, int repetitions, const std::string& only) {
     print(family.name, "CGAL, to arrays", points.size(),
           measured(repetitions, [&] { return by_cgal_to_arrays(points); }), "");
 #endif
+    print(family.name, "vkmesh, Voronoi cells in a box", points.size(),
+          measured(repetitions,
+                   [&] {
+                     const auto made = voronoi(points);
+                     if (!made) stop(made.error());
+                     return made->cell_count();
+                   }),
+          "");
+#ifdef VKMESH_BENCH_BOOST
+    print(family.name, "Boost.Polygon, Voronoi diagram", points.size(),
+          measured(repetitions, [&] { return by_boost(points); }), "");
+#endif
   }
 }
 
@@ -256,9 +289,10 @@ void all(std::size_t n, int repetitions, const std::string& only) {
 }  // namespace vkmesh::bench
 
 int main(int count, char** arguments) {
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const auto threads = static_cast<std::size_t>(count > 4 ? std::max(1, std::atoi(arguments[4])) : 1);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   const double points = count > 1 ? std::atof(arguments[1]) : 1e6;
   vkmesh::bench::keep_freed_memory();
   vkmesh::bench::all(static_cast<std::size_t>(points), count > 2 ? std::max(1, std::atoi(arguments[2])) : 5,
-                     count > 3 ? arguments[3] : "");
+                     count > 3 ? arguments[3] : "", threads);
 }
