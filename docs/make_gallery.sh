@@ -65,3 +65,19 @@ done
 "$vkmesh" remesh "$cgal/meshes/fandisk.off" "$work/adaptive.ply" --relative-adaptive 5e-4 --keep-creases 40 --quiet
 "$vkmesh" render "$cgal/meshes/fandisk.off" "$work/even.ply" "$work/adaptive.ply" "$out/remeshing.png" --size 420x380 \
   --columns 3 --style shaded-wire --caption before --caption "edges of 0.04" --caption "by curvature"
+
+# Points in the plane: their triangulation and their cells; a terrain of scattered heights.
+awk -v n=150 -f docs/points.awk </dev/null >"$work/points.xyz"
+"$vkmesh" delaunay "$work/points.xyz" "$work/delaunay.ply" --quiet
+"$vkmesh" voronoi "$work/points.xyz" "$work/voronoi.ply" --box 0,0,1,1 --quiet
+"$vkmesh" voronoi "$work/points.xyz" "$work/lloyd.ply" --box 0,0,1,1 --lloyd 30 --quiet
+"$vkmesh" render "$work/delaunay.ply" "$work/voronoi.ply" "$work/lloyd.ply" "$out/voronoi.png" --size 420x420 --columns 3 \
+  --orthographic --azimuth 0 --elevation 0 --style shaded-wire,flat,flat --color none,color,color --caption Delaunay \
+  --caption Voronoi --caption "Lloyd, 30 iterations"
+awk -v n=30 -f docs/points.awk </dev/null >"$work/points.xyz"
+"$vkmesh" delaunay "$work/points.xyz" "$out/circumcircles.svg" --dots --circumcircles --quiet
+awk -v n=20000 -v hills=1 -f docs/points.awk </dev/null >"$work/hills.xyz"
+"$vkmesh" delaunay "$work/hills.xyz" "$work/terrain.ply" --z --quiet
+"$vkmesh" simplify "$work/terrain.ply" "$work/simple.ply" --ratio 0.05 --quiet
+"$vkmesh" render "$work/terrain.ply" "$work/simple.ply" "$out/terrain.png" --size 560x360 --columns 2 --up z --elevation 35 \
+  --azimuth 25 --style shaded,shaded-wire --caption "20,000 heights" --caption "5 %"

@@ -68,7 +68,8 @@ struct VKMESH_API VoronoiDiagram {
 /// Collinear sites have strips for cells, a single one has the polygon. The diagram is a function of the set
 /// of points and the polygon: any order of the same points gives the same bytes but for the two maps of
 /// points. O(n log n), and the number of sides of the polygon for each edge that crosses its bounds, and for
-/// each vertex where it is not a box; on all cores beyond the triangulation. Memory: about 150 bytes a point.
+/// each vertex where it is not a box; on all cores beyond the triangulation. Memory: about 210 bytes a point,
+/// 130 of them the result.
 ///
 /// Errors: kUnsuitable for points that delaunay() refuses, and where the polygon is not convex, has no area
 /// or corners that are not finite; kInterrupted; kOutOfMemory.
