@@ -14,6 +14,8 @@
 
 #include <vkmesh/math/predicates.h>
 
+#include "base/parallel.h"
+
 namespace vkmesh::detail {
 
 /// The numbers of points along D. Hilbert's curve through a grid over their bounds, those of one cell along
@@ -31,6 +33,7 @@ class HilbertOrder {
  private:
   static constexpr std::size_t kFew = 24;
   static constexpr unsigned kLevelsAtOnce = 4;
+  static constexpr std::size_t kGrain = 1 << 14;
 
   explicit HilbertOrder(std::span<const DVec2> points) : points_(points) {}
 
@@ -84,37 +87,63 @@ class HilbertOrder {
     if (!(std::isfinite(scale) && scale > 0)) return std::sort(order.begin(), order.end(), by_place);
     static constexpr Steps kSteps;
     std::vector<std::uint64_t> keys(order.size()), sorted(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const DVec2 p = points_[order[k]];
-      const auto cell = [&](double x, double least) {
-        return static_cast<std::uint32_t>(std::min((x / 2 - least / 2) * scale * 2, cells - 1));
-      };
-      const std::uint32_t x = cell(p.x, low.x), y = cell(p.y, low.y);
-      std::uint32_t key = 0, state = 0;
-      for (unsigned level = levels; level-- > 0;) {
-        const unsigned shift = kLevelsAtOnce * level;
-        const std::uint32_t step = kSteps.of[state << 8 | (x >> shift & 15u) << 4 | (y >> shift & 15u)];
-        key = key << 8 | (step & 255u);
-        state = step >> 8;
+    parallel_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const DVec2 p = points_[order[k]];
+        const auto cell = [&](double x, double least) {
+          return static_cast<std::uint32_t>(std::min((x / 2 - least / 2) * scale * 2, cells - 1));
+        };
+        const std::uint32_t x = cell(p.x, low.x), y = cell(p.y, low.y);
+        std::uint32_t key = 0, state = 0;
+        for (unsigned level = levels; level-- > 0;) {
+          const unsigned shift = kLevelsAtOnce * level;
+          const std::uint32_t step = kSteps.of[state << 8 | (x >> shift & 15u) << 4 | (y >> shift & 15u)];
+          key = key << 8 | (step & 255u);
+          state = step >> 8;
+        }
+        keys[k] = static_cast<std::uint64_t>(key) << 32 | order[k];
       }
-      keys[k] = static_cast<std::uint64_t>(key) << 32 | order[k];
-    }
+    });
     for (unsigned shift = 32; shift < 32 + 8 * levels; shift += 8) {
-      std::array<std::uint32_t, 256> offset{};
-      for (const std::uint64_t key : keys) ++offset[key >> shift & 255u];
-      std::exclusive_scan(offset.begin(), offset.end(), offset.begin(), 0u);
-      for (const std::uint64_t key : keys) sorted[offset[key >> shift & 255u]++] = key;
+      sort_by_digit(keys, shift, sorted);
       std::swap(keys, sorted);
     }
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<std::uint32_t>(keys[k]);
-    for (std::size_t k = 0; k < order.size();) {
-      std::size_t end = k + 1;
-      while (end < order.size() && keys[end] >> 32 == keys[k] >> 32) ++end;
-      // Such a cell is smaller than the bounds; one that holds all is that only by rounding.
-      if (end - k == order.size()) return std::sort(order.begin(), order.end(), by_place);
-      if (end - k > 1) sort(order.subspan(k, end - k));
-      k = end;
-    }
+    // Such a cell is smaller than the bounds; one that holds all is that only by rounding.
+    if (keys.front() >> 32 == keys.back() >> 32) return std::sort(order.begin(), order.end(), by_place);
+    parallel_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t last) {
+      for (std::size_t k = begin; k < last; ++k) order[k] = static_cast<std::uint32_t>(keys[k]);
+    });
+    // A range sorts the cells that begin in it.
+    parallel_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t last) {
+      const auto begins = [&](std::size_t k) { return k == 0 || keys[k] >> 32 != keys[k - 1] >> 32; };
+      while (begin < last && !begins(begin)) ++begin;
+      while (begin < last) {
+        std::size_t end = begin + 1;
+        while (end < order.size() && !begins(end)) ++end;
+        if (end - begin > 1) sort(order.subspan(begin, end - begin));
+        begin = end;
+      }
+    });
+  }
+
+  /// Stable, by 8 bits of the keys.
+  static void sort_by_digit(const std::vector<std::uint64_t>& keys, unsigned shift,
+                            std::vector<std::uint64_t>& sorted) {
+    const std::size_t parts = std::clamp<std::size_t>(
+        keys.size() / kGrain, 1, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+    std::vector<std::array<std::uint32_t, 256>> offset(parts);
+    const auto for_each_in_part = [&](auto&& use) {
+      parallel_ranges(parts, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t part = first; part < last; ++part)
+          for (std::size_t k = keys.size() * part / parts; k < keys.size() * (part + 1) / parts; ++k)
+            use(offset[part][keys[k] >> shift & 255u], keys[k]);
+      });
+    };
+    for_each_in_part([](std::uint32_t& count, std::uint64_t) { ++count; });
+    std::uint32_t sum = 0;
+    for (std::size_t digit = 0; digit < 256; ++digit)
+      for (auto& of_part : offset) sum += std::exchange(of_part[digit], sum);
+    for_each_in_part([&](std::uint32_t& at, std::uint64_t key) { sorted[at++] = key; });
   }
 
   std::span<const DVec2> points_;

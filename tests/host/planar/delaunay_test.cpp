@@ -10,6 +10,8 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <vkmesh/mesh/indexed_face_set.h>
 #include <vkmesh/planar/delaunay.h>
@@ -192,7 +194,7 @@ std::vector<double> angles_of(const std::vector<Triangle>& triangles, const Poin
 }  // namespace
 
 TEST_CASE("Delaunay triangles are those of empty circles", "[delaunay]") {
-  for (const std::size_t n : {5u, 12u, 60u})
+  for (const std::size_t n : {5u, 12u, 40u})
     for (const auto& [name, points] : families(n)) {
       INFO(name << ", " << n);
       const DelaunayTriangulation made = triangulated(points);
@@ -270,6 +272,33 @@ TEST_CASE("A Delaunay triangulation is a function of the set of points", "[delau
       return triangles;
     };
     CHECK(in_points(made) == in_points(turned));
+  }
+}
+
+TEST_CASE("A Delaunay triangulation does not depend on the number of threads", "[delaunay]") {
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 8);
+  std::map<std::string, Points> all = families(40000);
+  for (const char* name : {"uniform", "tilted grid", "walls"}) {
+    INFO(name);
+    const Points& points = all[name];
+    const auto on = [&](int threads) {
+      DelaunayTriangulation made;
+      tbb::task_arena(threads).execute([&] { made = triangulated(points); });
+      return made;
+    };
+    const DelaunayTriangulation one = on(1);
+    for (const int threads : {2, 4}) {
+      const DelaunayTriangulation several_threads = on(threads);
+      CHECK(same(one.mesh, several_threads.mesh));
+      CHECK(one.vertex_of_point == several_threads.vertex_of_point);
+      CHECK(one.point_of_vertex == several_threads.point_of_vertex);
+    }
+    CHECK(first_wrong_edge(one.mesh, places(one, points)) == kInvalid);
+    tbb::task_arena(4).execute([&] {
+      const auto none = delaunay(points, [](double fraction) { return fraction < 0.05; });
+      REQUIRE(!none);
+      CHECK(none.error().code == ErrorCode::kInterrupted);
+    });
   }
 }
 

@@ -34,7 +34,8 @@ struct DelaunayTriangulation {
 ///
 /// Points are inserted in rounds of eight times as many, each along the curve (N. Amenta, S. Choi, G. Rote,
 /// "Incremental constructions con BRIO", 2003), by swaps of edges (C. L. Lawson, "Software for C1 surface
-/// interpolation", 1977). About O(n log n), one thread. Memory: about 100 bytes a point.
+/// interpolation", 1977), of tens of thousands on all cores. About O(n log n). Memory: about 100 bytes a
+/// point. The result is the same on any number of threads.
 ///
 /// Errors: kUnsuitable for coordinates that are not finite, and for more than 2^29 - 2 points; kInterrupted;
 /// kOutOfMemory.
