@@ -469,7 +469,7 @@ TEST_CASE("No sites have no cells", "[voronoi]") {
 }
 
 TEST_CASE("Sites outside the polygon", "[voronoi]") {
-  for (const auto& [name, points] : families(400)) {
+  for (const auto& [name, points] : families(150)) {
     if (name == "spread") continue;
     INFO(name);
     const Points bounds = bounds_of_sites(points);
