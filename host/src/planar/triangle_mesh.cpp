@@ -1,10 +1,11 @@
+#include "planar/triangle_mesh.h"
+
 #include <algorithm>
 #include <span>
 #include <utility>
 
 #include "base/huge_pages.h"
 #include "base/parallel.h"
-#include "planar/triangle_mesh.h"
 
 namespace vkmesh::detail {
 namespace {

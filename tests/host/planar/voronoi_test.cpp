@@ -399,7 +399,15 @@ TEST_CASE("Vertices on the sides and in the corners of the polygon are found exa
     // Sides and corners on and beside the lattice on which bisectors lie.
     if (i % 4 == 0)
       for (DVec2& p : clip) p *= 0.5;
-    require_same_as_cut(diagram_of(points, clip), clip, 1e-7);
+    const VoronoiDiagram diagram = diagram_of(points, clip);
+    require_same_as_cut(diagram, clip, 1e-7);
+    for (std::size_t cell = 0; cell < diagram.cell_count(); ++cell) {
+      const Points corners = polygon_of(diagram, cell);
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        const DVec2 edge = corners[(k + 1) % corners.size()] - corners[k];
+        if (std::hypot(edge.x, edge.y) < 1e-7) FAIL("what is one vertex is two");
+      }
+    }
   }
 }
 
