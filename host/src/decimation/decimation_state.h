@@ -73,7 +73,10 @@ struct DecimationState {
   bool boundary_kept = false;
   double mean_weight = 0;  // of all vertices at first
   PartitionSizes sizes = {};
-  Stop* stop = nullptr;  // none
+  Stop* stop = nullptr;                       // none
+  double progress_from = 0, progress_to = 1;  // what these removals are of all that is to be done
+  std::size_t first_faces = mesh.face_count(), first_vertices = mesh.apex();  // when they began
+  std::size_t input_faces = mesh.face_count();
 
   [[nodiscard]] bool at_target() const { return faces <= limits.faces || vertices <= limits.vertices; }
   [[nodiscard]] bool at_what_was_asked() const {
@@ -96,7 +99,8 @@ class PartitionState {
               .keep_events = all.keep_events,
               .boundary_kept = all.boundary_kept,
               .mean_weight = all.mean_weight,
-              .stop = all.stop} {
+              .stop = all.stop,
+              .input_faces = all.input_faces} {
     limits_.faces = 1;  // a removal takes two
     limits_.vertices = 0;
   }

@@ -64,7 +64,7 @@ class EdgeCollapses {
     /// move far for what their quadrics say that costs. It changes only when half as many are left, so that
     /// an edge is not put off again and again.
     void watch(const DecimationState& all) {
-      const std::size_t share = std::bit_floor(all.mesh.face_count() / std::max<std::size_t>(all.faces, 1));
+      const std::size_t share = std::bit_floor(all.input_faces / std::max<std::size_t>(all.faces, 1));
       const double edge_weight = 2 * all.mean_weight * static_cast<double>(share);
       only_at_boundary = share < kFewLeft;
       const double farthest2 = only_at_boundary ? kFarthestAtBoundary2 : kFarthest2;

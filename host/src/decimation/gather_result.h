@@ -27,11 +27,14 @@
 
 namespace vkmesh::detail {
 
-/// O(n). Errors: kInterrupted where the caller wants it; what has been done within a time is gathered.
+/// O(n). `input_faces`: of the input. `in_order`: records stand in the order of the input, if not for all of
+/// it; then the vertex map is that of the records, and else of the input, undefined where a vertex has none.
+/// Errors: kInterrupted where the caller wants it; what has been done within a time is gathered.
 template <class Point>
-Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const Point> points, bool in_order,
-                                     const Frame& frame, const Outcome& outcome,
-                                     const AttributeQuadrics* attributes, Stop& stop) {
+Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const Point> points,
+                                     std::size_t input_faces, bool in_order, const Frame& frame,
+                                     const Outcome& outcome, const AttributeQuadrics* attributes,
+                                     Stop& stop) {
   BasicDecimated<Point> result;
   result.stop = outcome.stop;
   result.collapses = outcome.collapses;
@@ -50,7 +53,8 @@ Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const P
 
   // Vertices and faces in the order of the input. The records are read once; what follows is in small arrays.
   const auto& vertices = mesh.vertices;
-  const std::size_t n = points.size();
+  const std::size_t n = in_order ? mesh.apex() : points.size(),
+                    faces = in_order ? mesh.face_count() : input_faces;
   constexpr std::size_t kGrain = std::size_t{1} << 15;
   constexpr std::uint32_t kMask = VertexRecord::kSourceMask;
   const auto source_of = [&](std::uint32_t v) { return in_order ? v : vertices[v].source & kMask; };
@@ -69,10 +73,10 @@ Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const P
   };
   // For each vertex of the input the one that absorbed it; in the end the one that stands for it, or itself.
   std::vector<std::uint32_t> by(n);
-  const std::vector<std::uint32_t> alive = collect(n, [&](std::uint32_t v) {
+  const std::vector<std::uint32_t> alive = collect(mesh.apex(), [&](std::uint32_t v) {
     const VertexRecord& vertex = vertices[v];
     prefetch_stream(&vertex);
-    const std::uint32_t source = vertex.source & kMask;
+    const std::uint32_t source = source_of(v);
     const bool absorbed = !vertex.alive() && vertex.leading != kInvalid;
     by[source] = absorbed ? source_of(vertex.leading & ~VertexRecord::kGone) : source;
     return vertex.alive();
@@ -104,9 +108,9 @@ Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const P
   result.positions.resize(alive.size());
   for (const std::uint32_t v : alive) {
     const VertexRecord& vertex = vertices[v];
-    const std::uint32_t source = vertex.source & kMask;
-    result.positions[new_vertex[source]] =
-        vertex.has(VertexRecord::kMoved) ? point_of<Point>(vertex.position, frame) : points[source];
+    result.positions[new_vertex[source_of(v)]] = vertex.has(VertexRecord::kMoved)
+                                                     ? point_of<Point>(vertex.position, frame)
+                                                     : points[vertex.source & kMask];
   }
   VKMESH_CHECK(stop.check());
 
@@ -114,14 +118,14 @@ Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const P
     prefetch_stream(&mesh.face(4 * f));
     return mesh.alive(4 * f);
   });
-  result.source_face = in_input_order(alive_faces, mesh.face_count(), source_of_face);
+  result.source_face = in_input_order(alive_faces, faces, source_of_face);
   VKMESH_CHECK(stop.check());
-  const auto new_face_of =
-      std::make_unique_for_overwrite<std::uint32_t[]>(mesh.face_count());  // of those alive
-  const std::span new_face(new_face_of.get(), mesh.face_count());
+  const auto new_face_of = std::make_unique_for_overwrite<std::uint32_t[]>(faces);  // of those alive
+  const std::span new_face(new_face_of.get(), faces);
   for (std::uint32_t i = 0; i < result.source_face.size(); ++i) new_face[result.source_face[i]] = i;
   if (attributes != nullptr) result.attributes = attributes->gather(alive_faces, new_face);
   VKMESH_CHECK(stop.check());
+  const bool all_alive = in_order && alive_faces.size() == faces;  // each is where it was
   std::vector<std::uint32_t> origin(3 * result.source_face.size()), twin(origin.size());
   parallel_ranges(alive_faces.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kAhead = 16;
@@ -129,14 +133,21 @@ Result<BasicDecimated<Point>> gather(const CollapseMesh& mesh, std::span<const P
       prefetch(&mesh.face(4 * alive_faces[std::min(k + kAhead, end - 1)]));
       const CollapseMesh::Face& face = mesh.face(4 * alive_faces[k]);
       for (std::uint32_t i = 0; i < 3; ++i) {
-        const std::uint32_t h = 3 * new_face[face.source] + i, t = face.twin[i];
+        const std::uint32_t f = source_of_face(alive_faces[k]);
+        const std::uint32_t h = 3 * new_face[f] + i, t = face.twin[i];
         origin[h] = new_vertex[source_of(face.origin[i])];
-        twin[h] = mesh.is_ghost(t) ? kInvalid : 3 * new_face[source_of_face(t / 4)] + t % 4;
+        twin[h] = mesh.is_ghost(t) ? kInvalid
+                  : all_alive      ? t - t / 4
+                                   : 3 * new_face[source_of_face(t / 4)] + t % 4;
       }
     }
   });
   VKMESH_CHECK(stop.check());
   result.mesh = HalfEdgeMesh::from_twins(std::move(origin), std::move(twin), result.positions.size());
+  if (in_order && (n < points.size() || faces < input_faces)) {
+    for (std::uint32_t& v : result.source_vertex) v = vertices[v].source & kMask;
+    for (std::uint32_t& f : result.source_face) f = mesh.face(4 * f).source;
+  }
   return result;
 }
 

@@ -35,7 +35,11 @@ Result<Outcome> run_removals(DecimationState& state) {
     const std::size_t first_faces = state.faces, first_vertices = state.vertices;
     const bool none_left = run_steps(
         stop, kRemovalsBetweenReports / Removals::kStep, [&] { return state.reached(); },
-        [&] { return removals.step(); }, [&] { return progress_of(state, first_faces, first_vertices); });
+        [&] { return removals.step(); },
+        [&] {
+          return state.progress_from +
+                 (state.progress_to - state.progress_from) * progress_of(state, first_faces, first_vertices);
+        });
     if (none_left) {
       removals.count_blocked();
       const bool by_error = state.outcome.blocked[Reason::kErrorBound] > 0;
@@ -43,7 +47,7 @@ Result<Outcome> run_removals(DecimationState& state) {
     }
     if (state.at_target() && !state.at_what_was_asked()) removals.count_blocked();
   }
-  if (!stop.is_cancelled()) stop.report(1.0);
+  if (!stop.is_cancelled()) stop.report(state.progress_to);
   VKMESH_CHECK(stop.check());
   if (state.outcome.stop == DecimateStop::kTargetReached && !state.at_target())
     state.outcome.stop = DecimateStop::kTimeLimit;

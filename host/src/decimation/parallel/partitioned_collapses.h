@@ -34,7 +34,7 @@ class PartitionedCollapses {
   static constexpr std::size_t kStep = kRemovalsBetweenReports;
 
   explicit PartitionedCollapses(DecimationState& state) : state_(state) {
-    const std::size_t count = partition_count(), edges = 3 * state.mesh.face_count() / 2 + 1;
+    const std::size_t count = partition_count(), edges = 3 * state.first_faces / 2 + 1;
     if (count > 1) {
       labels_ = partition_kd(state.mesh, count);
       for (std::size_t i = 0; i < count; ++i)
@@ -91,7 +91,7 @@ class PartitionedCollapses {
 
   [[nodiscard]] std::size_t partition_count() const {
     if (Queue::kExact || kAttributes || state_.criteria != nullptr) return 1;
-    return std::clamp<std::size_t>(std::bit_floor(state_.mesh.face_count() / state_.sizes.partition_faces), 1,
+    return std::clamp<std::size_t>(std::bit_floor(state_.first_faces / state_.sizes.partition_faces), 1,
                                    kMaxPartitions);
   }
 
@@ -154,8 +154,8 @@ class PartitionedCollapses {
   }
 
   [[nodiscard]] bool is_last() const {
-    return 4 * (state_.faces - state_.limits.faces) < state_.mesh.face_count() - state_.limits.faces ||
-           4 * (state_.vertices - state_.limits.vertices) < state_.mesh.apex() - state_.limits.vertices;
+    return 4 * (state_.faces - state_.limits.faces) < state_.first_faces - state_.limits.faces ||
+           4 * (state_.vertices - state_.limits.vertices) < state_.first_vertices - state_.limits.vertices;
   }
   [[nodiscard]] bool is_near() const {
     return state_.faces < 3 * state_.limits.faces || state_.vertices < 3 * state_.limits.vertices;

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 
 #include "base/large_array.h"
 #include "base/parallel.h"
+#include "base/parallel_filter.h"
 #include "base/prefetch.h"
 #include "base/stop.h"
 #include "mesh/edit/vertex_ranges.h"
@@ -191,6 +193,62 @@ class EditMesh : public EditFaces {
     });
     vertices[apex_] = {};
     return true;
+  }
+
+  /// Leaves out what is gone: faces, ghosts and vertices, isolated ones too. The others keep their order, and
+  /// have no tags. No edge may have been split. O(n) of what there was.
+  void compact() {
+    const std::vector<std::uint32_t> kept_faces = collect(face_count_ + ghosts_, [&](std::uint32_t f) {
+      prefetch_stream(&faces_[f]);
+      return faces_[f].alive();
+    });
+    const std::vector<std::uint32_t> kept = collect(vertex_bound_, [&](std::uint32_t v) {
+      prefetch_stream(&vertices[v]);
+      return v == apex_ || (vertices[v].leading & kVertexGone) == 0;
+    });
+    const std::size_t own = static_cast<std::size_t>(
+        std::ranges::lower_bound(kept_faces, static_cast<std::uint32_t>(face_count_)) - kept_faces.begin());
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    const auto numbers_of = [](const std::vector<std::uint32_t>& list, std::size_t bound) {
+      auto number = std::make_unique_for_overwrite<std::uint32_t[]>(bound);
+      parallel_ranges(list.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) number[list[i]] = static_cast<std::uint32_t>(i);
+      });
+      return number;
+    };
+    const auto face_number = numbers_of(kept_faces, face_count_ + ghosts_),
+               vertex_number = numbers_of(kept, vertex_bound_);
+    const auto half_edge = [&](std::uint32_t h) { return 4 * face_number[h / 4] + h % 4; };
+
+    LargeArray<Face> faces(kept_faces.size() + 64);
+    const auto copy_face = [&](std::size_t i) {
+      Face face = faces_[kept_faces[i]];
+      face.tags = 0;
+      for (std::uint32_t& v : face.origin) v = vertex_number[v];
+      for (std::uint32_t& t : face.twin) t = half_edge(t);
+      faces[i] = face;
+      return face;
+    };
+    ranges_ = VertexRanges(kept.size() - 1, own, [&](std::size_t begin, std::size_t end) {
+      VertexRanges::Extent extent;
+      for (std::size_t i = begin; i < end; ++i)
+        for (const std::uint32_t v : copy_face(i).origin) extent.add(v);
+      return extent;
+    });
+    for (std::size_t i = own; i < kept_faces.size(); ++i) copy_face(i);
+    LargeArray<Vertex> moved(kept.size());
+    parallel_ranges(kept.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        moved[i] = vertices[kept[i]];
+        if (kept[i] != apex_) moved[i].leading = half_edge(moved[i].leading);
+      }
+    });
+    apex_ = vertex_number[apex_];
+    vertex_bound_ = kept.size();
+    face_count_ = own;
+    ghosts_ = kept_faces.size() - own;
+    faces_ = std::move(faces);
+    vertices = std::move(moved);
   }
 
   /// All vertices are less, the apex and those of splits included.
