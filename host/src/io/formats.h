@@ -68,6 +68,7 @@ struct Source {
   int* inlines = nullptr;                         ///< How many files were inlined, of all that are read.
   bool has_lines = true;                          ///< False: bad_line() tells the byte.
   bool planar = false;                            ///< As ReadOptions has it.
+  std::size_t level = 0;                          ///< Of detail; see ReadOptions.
 
   /// kUnreadable at the line that holds `at`.
   [[nodiscard]] tl::unexpected<Error> bad_line(const char* at, std::string message) const;
@@ -180,6 +181,11 @@ void encode_scene(const IndexedFaceSet& mesh, const WriteOptions& options, Outpu
 /// Errors: kUnsuitable for what exceeds the format's 4 GiB, or has no points.
 [[nodiscard]] Result<void> encode_gltf(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out,
                                        Notes& notes);
+
+/// Levels of detail in one file, the finest first; see write_levels().
+[[nodiscard]] Result<void> encode_gltf_levels(std::span<const IndexedFaceSet> levels,
+                                              const LevelWriteOptions& options, const WriteOptions& write,
+                                              Output& out, Notes& notes);
 
 /// The lines of a comment: every control character ends one.
 [[nodiscard]] std::vector<std::string> comment_lines(const std::string& comment);

@@ -380,6 +380,7 @@ Result<MeshFile> parse_content(Source source, const ReadOptions& options) {
   source.inlines = &inlines;
   Positions positions(source.offset);
   source.positions = &positions;
+  source.level = options.level;
   VKMESH_TRY(MeshFile file, parse_format(source));
   if (!has_points(file))
     return fail(ErrorCode::kUnreadable, "the file holds no points" + passed_over(file.notes),
@@ -488,19 +489,26 @@ void make_encodable(std::vector<Channel>& channels, const char* element, Notes& 
   }
 }
 
+bool is_encodable(const IndexedFaceSet& mesh) {
+  const auto encodable = [](const std::vector<Channel>& channels) {
+    return std::all_of(channels.begin(), channels.end(), [](const Channel& c) { return is_encodable(c); });
+  };
+  return encodable(mesh.point_channels) && encodable(mesh.corner_channels) && encodable(mesh.face_channels);
+}
+
+void make_encodable(IndexedFaceSet& mesh, Notes& notes) {
+  make_encodable(mesh.point_channels, "point", notes);
+  make_encodable(mesh.corner_channels, "corner", notes);
+  make_encodable(mesh.face_channels, "face", notes);
+}
+
 Result<Notes> encode(const IndexedFaceSet& given, const WriteOptions& options, Output& out) {
   Notes notes;
-  const auto encodable = [](const std::vector<Channel>& channels) {
-    return std::all_of(channels.begin(), channels.end(), is_encodable);
-  };
   IndexedFaceSet changed;
-  const bool as_it_is =
-      encodable(given.point_channels) && encodable(given.corner_channels) && encodable(given.face_channels);
+  const bool as_it_is = is_encodable(given);
   if (!as_it_is) {
     changed = given;
-    make_encodable(changed.point_channels, "point", notes);
-    make_encodable(changed.corner_channels, "corner", notes);
-    make_encodable(changed.face_channels, "face", notes);
+    make_encodable(changed, notes);
   }
   const IndexedFaceSet& mesh = as_it_is ? given : changed;
   if (options.format != FileFormat::kObj && !options.material_libraries.empty())
@@ -631,6 +639,54 @@ Result<std::vector<FileNote>> losses_of(const IndexedFaceSet& mesh, const WriteO
     VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open("/dev/null"));
     detail::Output out(file.file(), "/dev/null", false);
     return detail::encode(mesh, options, out);
+  });
+}
+
+Result<std::vector<FileNote>> write_levels(const std::filesystem::path& path,
+                                           std::span<const IndexedFaceSet> levels,
+                                           const LevelWriteOptions& level_options,
+                                           const WriteOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<FileNote>> {
+    if (options.format != FileFormat::kGltf)
+      return fail(ErrorCode::kUsage, "only glTF holds several levels of detail in one file");
+    if (levels.empty()) return fail(ErrorCode::kUsage, "there are no levels of detail to write");
+    if (!level_options.screen_coverage.empty() && level_options.screen_coverage.size() != levels.size())
+      return fail(ErrorCode::kUsage, "screen coverage is one for each level of detail, or not given");
+    detail::Notes notes;
+    std::vector<IndexedFaceSet> changed;
+    for (const IndexedFaceSet& level : levels) {
+      VKMESH_CHECK(detail::check_writable(level, options));
+      if (changed.empty() && !detail::is_encodable(level)) changed.assign(levels.begin(), levels.end());
+    }
+    for (IndexedFaceSet& level : changed) detail::make_encodable(level, notes);
+    VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open(path));
+    detail::Output out(file.file(), path == "-" ? "standard output" : path.string(), options.gzip);
+    VKMESH_CHECK(
+        detail::encode_gltf_levels(changed.empty() ? levels : changed, level_options, options, out, notes));
+    VKMESH_CHECK(out.finish());
+    VKMESH_CHECK(file.commit());
+    return notes;
+  });
+}
+
+Result<std::vector<FileNote>> write_meshes(std::span<const std::filesystem::path> paths,
+                                           std::span<const IndexedFaceSet> meshes,
+                                           const WriteOptions& options) {
+  return detail::catching([&]() -> Result<std::vector<FileNote>> {
+    if (paths.size() != meshes.size()) return fail(ErrorCode::kUsage, "there is not one path for each mesh");
+    std::vector<FileNote> all;
+    std::vector<detail::OutputFile> files;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      VKMESH_CHECK(detail::check_writable(meshes[i], options));
+      VKMESH_TRY(detail::OutputFile file, detail::OutputFile::open(paths[i]));
+      detail::Output out(file.file(), paths[i].string(), options.gzip);
+      VKMESH_TRY(const detail::Notes notes, detail::encode(meshes[i], options, out));
+      for (const FileNote& note : notes)
+        if (std::ranges::find(all, note) == all.end()) all.push_back(note);
+      files.push_back(std::move(file));
+    }
+    for (detail::OutputFile& file : files) VKMESH_CHECK(file.commit());
+    return all;
   });
 }
 

@@ -48,7 +48,8 @@ struct MeshFile {
   FileEncoding encoding = FileEncoding::kAscii;
   bool gzip = false;
   std::vector<std::string> material_libraries;  ///< OBJ: the files that `mtllib` names.
-  std::vector<FileNote> notes;                  ///< One for each kind of difference.
+  std::size_t levels = 1;       ///< glTF: the levels of detail of the node that has most; see ReadOptions.
+  std::vector<FileNote> notes;  ///< One for each kind of difference.
 };
 
 struct ReadOptions {
@@ -61,6 +62,9 @@ struct ReadOptions {
   bool find_offset = false;
   /// XYZ: take lines of two numbers, too, as points whose z is 0.
   bool planar = false;
+  /// glTF: which level of detail is read of nodes that have several, by MSFT_lod or as nodes NAME_LOD0,
+  /// NAME_LOD1, … beside each other; of those that have fewer, the coarsest. Default 0, the finest.
+  std::size_t level = 0;
 };
 
 /// Reads a file of any known format. The content decides the format, the extension only where the content
@@ -113,6 +117,36 @@ struct WriteOptions {
 /// The same into memory.
 [[nodiscard]] VKMESH_API Result<std::vector<std::byte>> encode_mesh(const IndexedFaceSet& mesh,
                                                                     const WriteOptions& options);
+
+/// How levels of detail stand in a glTF file.
+enum class LevelLayout {
+  kNodes,   ///< Nodes NAME_LOD0, NAME_LOD1, … under one node NAME, as engines know them by name.
+  kMsftLod  ///< A node with the finest mesh names those of the others, by the extension MSFT_lod.
+};
+
+struct LevelWriteOptions {
+  LevelLayout layout = LevelLayout::kNodes;
+  std::string name = "mesh";  ///< NAME in the names of nodes and meshes.
+  /// MSFT_lod: for each level the least share of the screen that it is meant for, falling. Empty: not said.
+  std::vector<double> screen_coverage;
+  /// The points of each level are the first of those of the level before, and so are what its corners have:
+  /// vertices are written once, the coarsest level's first, and a level takes the first of them.
+  bool shared_points = false;
+};
+
+/// Writes levels of detail, the finest first, into one glTF file. Otherwise as write_mesh(). Errors: also
+/// kUsage for another format, for no levels, and for a coverage that is not one for each of them.
+[[nodiscard]] VKMESH_API Result<std::vector<FileNote>> write_levels(const std::filesystem::path& path,
+                                                                    std::span<const IndexedFaceSet> levels,
+                                                                    const LevelWriteOptions& level_options,
+                                                                    const WriteOptions& options);
+
+/// Writes each mesh into a file of its own, all of one format. All files are whole before the first of them
+/// appears. The notes are those of all. Otherwise as write_mesh(). Errors: also kUsage unless there is a path
+/// for each mesh.
+[[nodiscard]] VKMESH_API Result<std::vector<FileNote>> write_meshes(
+    std::span<const std::filesystem::path> paths, std::span<const IndexedFaceSet> meshes,
+    const WriteOptions& options);
 
 /// Writes polylines, each the points of one in order, as the lines ("l") of an OBJ file that holds the points
 /// they name; `offset` is added to each. Otherwise as write_mesh(). Errors: kUsage for an index out of range;

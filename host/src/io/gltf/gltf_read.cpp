@@ -241,7 +241,8 @@ class AssetReader {
       std::vector<std::string> found;
       if (const Json* list = member(document, key); list != nullptr && list->is_array())
         for (const Json& name : *list)
-          if (name.is_string() && name != "KHR_mesh_quantization" && name != "EXT_mesh_gpu_instancing")
+          if (name.is_string() && name != "KHR_mesh_quantization" && name != "EXT_mesh_gpu_instancing" &&
+              name != "MSFT_lod")
             found.push_back(name.get<std::string>());
       return found;
     };
@@ -642,7 +643,11 @@ class SceneReader {
         materials_(asset.materials),
         skins_(asset.skins),
         notes_(notes),
-        accessors_(source, asset) {}
+        accessors_(source, asset),
+        level_(source.level) {}
+
+  /// The levels of detail of the object that has most, when the scene has been read.
+  [[nodiscard]] std::size_t levels() const { return levels_; }
 
   Result<IndexedFaceSet> read() {
     if (model_.scenes.empty())
@@ -651,6 +656,8 @@ class SceneReader {
     else
       VKMESH_CHECK(walk());
     if (mesh_.points.empty()) return accessors_.bad("the file holds no points that a scene shows");
+    if (levels_ > 1 && level_ == 0)
+      notes_.push_back({"dropped.levels", std::to_string(levels_ - 1) + " coarser levels of detail ignored"});
     finish();
     return std::move(mesh_);
   }
@@ -683,7 +690,8 @@ class SceneReader {
       dmat4 parent;
     };
     std::vector<Visit> open;
-    const auto push = [&](const std::vector<int>& nodes, const dmat4& parent) {
+    const auto push = [&](const std::vector<int>& children, const dmat4& parent) {
+      const std::vector<int> nodes = at_level(children);
       for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent});
     };
     push(roots, dmat4(1));
@@ -718,6 +726,67 @@ class SceneReader {
         VKMESH_CHECK(add_instances(node, index, worlds_[index]));
     }
     return {};
+  }
+
+  /// "chair" and 2 for "chair_LOD2" or "chair_lod2".
+  static std::optional<std::pair<std::string, std::size_t>> named_level(const std::string& name) {
+    const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+    if (digits == name.size() || name.size() - digits > 3 || digits < 4) return std::nullopt;
+    const std::string mark = name.substr(digits - 4, 4);
+    if (mark != "_LOD" && mark != "_lod") return std::nullopt;
+    return std::pair(name.substr(0, digits - 4), static_cast<std::size_t>(std::stoul(name.substr(digits))));
+  }
+
+  /// Of nodes beside each other those that show the level of detail that is asked for, or the coarsest that
+  /// there is.
+  std::vector<int> at_level(const std::vector<int>& nodes) {
+    const auto node_of = [&](int index) -> const tinygltf::Node* {
+      return index >= 0 && static_cast<std::size_t>(index) < model_.nodes.size()
+                 ? &model_.nodes[static_cast<std::size_t>(index)]
+                 : nullptr;
+    };
+    // By name: which node shows each object, and its level.
+    std::map<std::string, std::pair<std::size_t, int>> best;
+    std::map<std::string, std::size_t> count;
+    for (const int index : nodes)
+      if (const tinygltf::Node* node = node_of(index); node != nullptr)
+        if (const auto named = named_level(node->name)) {
+          ++count[named->first];
+          auto& [level, shown] = best.try_emplace(named->first, named->second, index).first->second;
+          const bool nearer = named->second <= level_ ? level > level_ || named->second > level
+                                                      : level > level_ && named->second < level;
+          if (!nearer) continue;
+          level = named->second;
+          shown = index;
+        }
+    std::vector<int> kept;
+    for (const int index : nodes) {
+      const tinygltf::Node* node = node_of(index);
+      if (node == nullptr) {
+        kept.push_back(index);
+        continue;
+      }
+      if (const auto named = named_level(node->name); named && count[named->first] > 1) {
+        levels_ = std::max(levels_, count[named->first]);
+        if (best[named->first].second != index) continue;
+      }
+      const std::vector<int> coarser = coarser_nodes(*node);
+      levels_ = std::max(levels_, coarser.size() + 1);
+      kept.push_back(level_ == 0 || coarser.empty() ? index : coarser[std::min(level_, coarser.size()) - 1]);
+    }
+    return kept;
+  }
+
+  /// The nodes that MSFT_lod names for further levels, the finer first.
+  static std::vector<int> coarser_nodes(const tinygltf::Node& node) {
+    std::vector<int> coarser;
+    const auto extension = node.extensions.find("MSFT_lod");
+    if (extension == node.extensions.end() || !extension->second.IsObject()) return coarser;
+    const tinygltf::Value& ids = extension->second.Get("ids");
+    for (std::size_t i = 0; ids.IsArray() && i < ids.ArrayLen(); ++i)
+      if (const tinygltf::Value& id = ids.Get(static_cast<int>(i)); id.IsNumber())
+        coarser.push_back(id.GetNumberAsInt());
+    return coarser;
   }
 
   /// A mesh that a skin poses: where its joints are, and not where its node is (specification, 3.7.3.3).
@@ -1051,6 +1120,7 @@ class SceneReader {
   std::map<std::string, GrowingChannel> channels_;
   std::vector<std::uint32_t> face_materials_;  ///< materials_.size() for none.
   std::set<std::string> ignored_attributes_;
+  std::size_t level_ = 0, levels_ = 1;  // of detail: the one that is read, and how many there are
   std::size_t lines_ = 0, without_position_ = 0, morphed_ = 0, left_over_ = 0, turns_ = 0;
 };
 
@@ -1085,7 +1155,9 @@ Result<MeshFile> parse_gltf(const Source& source) {
   }
   Asset asset;
   VKMESH_CHECK(AssetReader(source, container, file.notes).read(asset));
-  VKMESH_TRY(file.geometry, SceneReader(source, asset, file.notes).read());
+  SceneReader scene(source, asset, file.notes);
+  VKMESH_TRY(file.geometry, scene.read());
+  file.levels = scene.levels();
   return file;
 }
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <streambuf>
 #include <string>
 #include <type_traits>
@@ -19,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include <vkmesh/math/bounds.h>
+#include <vkmesh/mesh/handles.h>
 
 #include "base/distinct_rows.h"
 #include "io/formats.h"
@@ -68,48 +71,160 @@ std::string attribute_name(const std::string& channel) {
 /// Normals whose squared length is this near to 1 are unit vectors.
 constexpr double kUnit = 1e-5;
 
-class GltfWriter {
+/// The buffer of a file and what stands in it, of one mesh or of several.
+class GltfFile {
  public:
-  GltfWriter(const IndexedFaceSet& mesh, const WriteOptions& options, Notes& notes)
-      : mesh_(mesh), options_(options), notes_(notes) {}
+  /// Leaves room for the JSON in the 32-bit length of a GLB file.
+  static constexpr std::size_t kLargest = 0xffffffffu - (std::size_t{1} << 24);
 
-  Result<void> write(Output& out) {
+  /// A buffer view and accessor over elements of `width` components that were appended from byte `begin` on.
+  template <class T>
+  int accessor(std::size_t begin, std::size_t count, unsigned width, std::size_t stride, int target,
+               bool normalized) {
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = begin;
+    view.byteLength = bytes.size() - begin;
+    view.byteStride = stride == width * sizeof(T) ? 0 : stride;
+    view.target = target;
+    model.bufferViews.push_back(view);
+    // Every view begins at a multiple of 4.
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    return accessor_of<T>(static_cast<int>(model.bufferViews.size()) - 1, count, width, normalized);
+  }
+
+  /// The same over elements of vertices under this name. Where an earlier mesh has begun with the same, they
+  /// are taken from there, and the appended bytes let go.
+  template <class T>
+  int vertex_accessor(const std::string& name, std::size_t begin, std::size_t count, unsigned width,
+                      std::size_t stride, bool normalized) {
+    const std::size_t size = bytes.size() - begin;
+    const auto [known, is_new] = view_of_.try_emplace(name, static_cast<int>(model.bufferViews.size()));
+    if (!is_new) {
+      tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(known->second)];
+      const tinygltf::Accessor& first = model.accessors[first_accessor_[name]];
+      const bool alike = first.type == type_of(width) && first.componentType == component_type<T>() &&
+                         first.normalized == normalized && size <= view.byteLength;
+      if (alike && std::memcmp(&bytes[view.byteOffset], &bytes[begin], size) == 0) {
+        bytes.resize(begin);
+        view.byteStride = stride;  // which a view of several accessors has to say
+        return accessor_of<T>(known->second, count, width, normalized);
+      }
+      known->second = static_cast<int>(model.bufferViews.size());
+    }
+    first_accessor_[name] = model.accessors.size();
+    return accessor<T>(begin, count, width, stride, TINYGLTF_TARGET_ARRAY_BUFFER, normalized);
+  }
+
+  /// The materials of these names, in their order; -1 for an empty name, which stands for none.
+  std::vector<int> materials(const std::vector<std::string>& names) {
+    const auto [known, is_new] = materials_of_.try_emplace(names);
+    if (!is_new) return known->second;
+    for (const std::string& name : names) {
+      known->second.push_back(name.empty() ? -1 : static_cast<int>(model.materials.size()));
+      if (name.empty()) continue;
+      model.materials.emplace_back();
+      model.materials.back().name = valid_utf8(name);
+    }
+    return known->second;
+  }
+
+  template <class T>
+  void append(T value) {
+    const auto* from = reinterpret_cast<const unsigned char*>(&value);
+    bytes.insert(bytes.end(), from, from + sizeof(value));
+  }
+
+  /// With the nodes that were added, of which those of the scene are its roots.
+  Result<void> write(const WriteOptions& options, const tinygltf::Scene& scene, Output& out) {
+    if (bytes.size() > kLargest) return fail(ErrorCode::kUnsuitable, "a glTF buffer holds less than 4 GiB");
+    model.asset.version = "2.0";
+    if (const std::vector<std::string> comment = comment_lines(options.comment); !comment.empty())
+      model.asset.generator = valid_utf8(comment.front());
+    tinygltf::Buffer buffer;
+    buffer.data = std::move(bytes);
+    model.buffers.push_back(std::move(buffer));
+    model.scenes.push_back(scene);
+    model.defaultScene = 0;
+    OutputStream streambuf(out);
+    std::ostream stream(&streambuf);
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, true,
+                                                options.encoding != FileEncoding::kAscii);
+    return {};
+  }
+
+  std::vector<unsigned char> bytes;
+  tinygltf::Model model;
+
+ private:
+  static int type_of(unsigned width) {
+    static constexpr int kTypes[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
+                                     TINYGLTF_TYPE_VEC4};
+    return kTypes[width - 1];
+  }
+  template <class T>
+  static constexpr int component_type() {
+    return std::is_same_v<T, float>           ? TINYGLTF_COMPONENT_TYPE_FLOAT
+           : std::is_same_v<T, std::int8_t>   ? TINYGLTF_COMPONENT_TYPE_BYTE
+           : std::is_same_v<T, std::uint8_t>  ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+           : std::is_same_v<T, std::int16_t>  ? TINYGLTF_COMPONENT_TYPE_SHORT
+           : std::is_same_v<T, std::uint16_t> ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                                              : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  }
+  template <class T>
+  int accessor_of(int view, std::size_t count, unsigned width, bool normalized) {
+    tinygltf::Accessor a;
+    a.bufferView = view;
+    a.componentType = component_type<T>();
+    a.count = count;
+    a.type = type_of(width);
+    a.normalized = normalized;
+    model.accessors.push_back(a);
+    return static_cast<int>(model.accessors.size()) - 1;
+  }
+
+  std::map<std::string, int> view_of_;                 // of vertices, by the name of what they hold
+  std::map<std::string, std::size_t> first_accessor_;  // over that view
+  std::map<std::vector<std::string>, std::vector<int>> materials_of_;
+};
+
+/// Attributes of corners around a point, numbered by first appearance.
+struct CornerRows {
+  using Row = std::array<float, 11>;  // The point in two exact halves, a normal, uv, a colour.
+  DistinctRows<11> distinct;
+  std::vector<Row> rows;
+  std::vector<std::uint32_t> point;  // of each row
+};
+
+/// Puts one mesh into a file.
+class GltfMesh {
+ public:
+  GltfMesh(GltfFile& file, const IndexedFaceSet& mesh, Notes& notes)
+      : file_(file), bytes_(file.bytes), model_(file.model), mesh_(mesh), notes_(notes) {
     choose();
-    split();
+  }
+
+  /// Settles what its vertices are.
+  void split() {
+    CornerRows rows;
+    static_cast<void>(split(rows));
+  }
+  /// The same, numbered on from those of coarser meshes, of whose points and rows it has all. False, with
+  /// nothing done, where it has not.
+  [[nodiscard]] bool split(CornerRows& rows) { return split_into(rows); }
+
+  /// Appends the mesh to the model.
+  void put(const std::string& name) {
     put_positions();
     put_normals();
     put_uv();
     put_colors();
     for (const Channel* c : custom_) put_custom(*c);
     put_faces();
-    if (bytes_.size() > kLargest) return fail(ErrorCode::kUnsuitable, "a glTF buffer holds less than 4 GiB");
-
-    model_.asset.version = "2.0";
-    if (const std::vector<std::string> comment = comment_lines(options_.comment); !comment.empty())
-      model_.asset.generator = valid_utf8(comment.front());
-    tinygltf::Buffer buffer;
-    buffer.data = std::move(bytes_);
-    model_.buffers.push_back(std::move(buffer));
-    tinygltf::Node node;
-    node.mesh = 0;
-    if (options_.offset != DVec3(0.0))
-      node.translation = {options_.offset.x, options_.offset.y, options_.offset.z};
-    model_.nodes.push_back(node);
-    tinygltf::Scene scene;
-    scene.nodes = {0};
-    model_.scenes.push_back(scene);
-    model_.defaultScene = 0;
-    OutputStream streambuf(out);
-    std::ostream stream(&streambuf);
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, true,
-                                                options_.encoding != FileEncoding::kAscii);
-    return {};
+    model_.meshes.back().name = name;
   }
 
  private:
-  /// Leaves room for the JSON in the 32-bit length of a GLB file.
-  static constexpr std::size_t kLargest = 0xffffffffu - (std::size_t{1} << 24);
-
   /// An attribute of points or corners that goes into the file.
   struct Attribute {
     const Channel* channel = nullptr;
@@ -206,34 +321,38 @@ class GltfWriter {
 
   /// A vertex for each point; or, where corners have attributes, for each different row of those around a
   /// point, in order of first appearance, and for each point without corners at last.
-  void split() {
+  bool split_into(CornerRows& rows) {
     indices_ = mesh_.corners;
+    vertex_corner_.clear();
     vertex_point_.resize(mesh_.points.size());
     for (std::size_t i = 0; i < vertex_point_.size(); ++i) vertex_point_[i] = static_cast<std::uint32_t>(i);
     const std::array<Attribute, 3> attributes = {normal_, uv_, color_};
     if (std::none_of(attributes.begin(), attributes.end(),
                      [](const Attribute& a) { return a && a.of_corners; }))
-      return;
-    using Row = std::array<float, 11>;  // The point in two exact halves, a normal, uv, a colour.
-    DistinctRows<11> distinct;
-    std::vector<Row> rows;
+      return true;
     std::vector<bool> used(mesh_.points.size());
-    vertex_point_.clear();
+    vertex_corner_.assign(rows.point.size(), kInvalid);
+    std::size_t found = 0;
     for (std::size_t c = 0; c < mesh_.corners.size(); ++c) {
       const std::uint32_t point = mesh_.corners[c];
-      Row row = {static_cast<float>(point & 0xffffu), static_cast<float>(point >> 16)};
+      CornerRows::Row row = {static_cast<float>(point & 0xffffu), static_cast<float>(point >> 16)};
       std::size_t at = 2;
       for (const Attribute& a : attributes)
         if (a && a.of_corners)
           for (unsigned k = 0; k < a.channel->components; ++k)
             row[at++] = channel_float(*a.channel, c * a.channel->components + k);
-      indices_[c] = distinct.number(row.data(), rows);
+      indices_[c] = rows.distinct.number(row.data(), rows.rows);
       used[point] = true;
-      if (indices_[c] == vertex_point_.size()) {
-        vertex_point_.push_back(point);
-        vertex_corner_.push_back(static_cast<std::uint32_t>(c));
+      if (indices_[c] == rows.point.size()) {
+        rows.point.push_back(point);
+        vertex_corner_.push_back(kInvalid);
       }
+      if (vertex_corner_[indices_[c]] != kInvalid) continue;
+      vertex_corner_[indices_[c]] = static_cast<std::uint32_t>(c);
+      ++found;
     }
+    if (found < rows.point.size()) return false;
+    vertex_point_ = rows.point;
     // No corner gives them attributes, so they have none.
     std::size_t alone = 0;
     for (std::size_t i = 0; i < used.size(); ++i) alone += !used[i];
@@ -241,42 +360,7 @@ class GltfWriter {
       notes_.push_back(
           {"dropped.isolated_points",
            std::to_string(alone) + " points without a face left out: they have no attributes of corners"});
-  }
-
-  /// A buffer view and accessor over elements of `width` components that were appended from byte `begin` on.
-  template <class T>
-  int accessor(std::size_t begin, std::size_t count, unsigned width, std::size_t stride, int target,
-               bool normalized) {
-    static constexpr int kTypes[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
-                                     TINYGLTF_TYPE_VEC4};
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = begin;
-    view.byteLength = bytes_.size() - begin;
-    view.byteStride = stride == width * sizeof(T) ? 0 : stride;
-    view.target = target;
-    model_.bufferViews.push_back(view);
-    tinygltf::Accessor a;
-    a.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
-    a.componentType = std::is_same_v<T, float>           ? TINYGLTF_COMPONENT_TYPE_FLOAT
-                      : std::is_same_v<T, std::int8_t>   ? TINYGLTF_COMPONENT_TYPE_BYTE
-                      : std::is_same_v<T, std::uint8_t>  ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
-                      : std::is_same_v<T, std::int16_t>  ? TINYGLTF_COMPONENT_TYPE_SHORT
-                      : std::is_same_v<T, std::uint16_t> ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
-                                                         : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    a.count = count;
-    a.type = kTypes[width - 1];
-    a.normalized = normalized;
-    model_.accessors.push_back(a);
-    // Every view begins at a multiple of 4.
-    bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    return static_cast<int>(model_.accessors.size()) - 1;
-  }
-
-  template <class T>
-  void append(T value) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(value));
+    return true;
   }
 
   /// One element for each vertex: value(vertex, k) gives its component k. Elements begin at multiples of 4
@@ -285,11 +369,10 @@ class GltfWriter {
   int put_vertices(const std::string& name, unsigned width, bool normalized, Value&& value) {
     const std::size_t begin = bytes_.size(), stride = (width * sizeof(T) + 3) / 4 * 4;
     for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
-      for (unsigned k = 0; k < width; ++k) append(static_cast<T>(value(v, k)));
+      for (unsigned k = 0; k < width; ++k) file_.append(static_cast<T>(value(v, k)));
       bytes_.resize(begin + (v + 1) * stride);
     }
-    const int index =
-        accessor<T>(begin, vertex_point_.size(), width, stride, TINYGLTF_TARGET_ARRAY_BUFFER, normalized);
+    const int index = file_.vertex_accessor<T>(name, begin, vertex_point_.size(), width, stride, normalized);
     attributes_[name] = index;
     return index;
   }
@@ -378,17 +461,10 @@ class GltfWriter {
     std::vector<std::vector<std::uint32_t>> of_label(material_->labels.size());
     for (std::size_t f = 0; f < mesh_.face_count(); ++f)
       for (std::size_t k = 0; k < 3; ++k) of_label[*label_of(*material_, f)].push_back(indices_[3 * f + k]);
-    for (std::size_t label = 0; label < of_label.size(); ++label) {
-      // The empty label stands for no material.
-      int index = -1;
-      if (!material_->labels[label].empty()) {
-        index = static_cast<int>(model_.materials.size());
-        model_.materials.emplace_back();
-        model_.materials.back().name = valid_utf8(material_->labels[label]);
-      }
+    const std::vector<int> materials = file_.materials(material_->labels);
+    for (std::size_t label = 0; label < of_label.size(); ++label)
       if (!of_label[label].empty())
-        add_primitive(TINYGLTF_MODE_TRIANGLES, put_indices(of_label[label]), index);
-    }
+        add_primitive(TINYGLTF_MODE_TRIANGLES, put_indices(of_label[label]), materials[label]);
   }
 
   int put_indices(const std::vector<std::uint32_t>& indices) {
@@ -397,13 +473,15 @@ class GltfWriter {
     const bool small = vertex_point_.size() <= 0xffff;
     for (const std::uint32_t i : indices) {
       if (small)
-        append(static_cast<std::uint16_t>(i));
+        file_.append(static_cast<std::uint16_t>(i));
       else
-        append(i);
+        file_.append(i);
     }
     constexpr int kTarget = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-    return small ? accessor<std::uint16_t>(begin, indices.size(), 1, sizeof(std::uint16_t), kTarget, false)
-                 : accessor<std::uint32_t>(begin, indices.size(), 1, sizeof(std::uint32_t), kTarget, false);
+    return small ? file_.accessor<std::uint16_t>(begin, indices.size(), 1, sizeof(std::uint16_t), kTarget,
+                                                 false)
+                 : file_.accessor<std::uint32_t>(begin, indices.size(), 1, sizeof(std::uint32_t), kTarget,
+                                                 false);
   }
 
   void add_primitive(int mode, int indices, int material) {
@@ -415,22 +493,91 @@ class GltfWriter {
     model_.meshes.back().primitives.push_back(primitive);
   }
 
+  GltfFile& file_;
+  std::vector<unsigned char>& bytes_;
+  tinygltf::Model& model_;
   const IndexedFaceSet& mesh_;
-  const WriteOptions& options_;
   Notes& notes_;
   Attribute normal_, uv_, color_;
   std::vector<const Channel*> custom_;
   const Channel* material_ = nullptr;
   std::vector<std::uint32_t> indices_, vertex_point_, vertex_corner_;
-  std::vector<unsigned char> bytes_;
   std::map<std::string, int> attributes_;
-  tinygltf::Model model_;
 };
+
+tinygltf::Node node_at(const DVec3& offset) {
+  tinygltf::Node node;
+  if (offset != DVec3(0.0)) node.translation = {offset.x, offset.y, offset.z};
+  return node;
+}
 
 }  // namespace
 
 Result<void> encode_gltf(const IndexedFaceSet& mesh, const WriteOptions& options, Output& out, Notes& notes) {
-  return GltfWriter(mesh, options, notes).write(out);
+  GltfFile file;
+  GltfMesh writer(file, mesh, notes);
+  writer.split();
+  writer.put("");
+  tinygltf::Node node = node_at(options.offset);
+  node.mesh = 0;
+  file.model.nodes.push_back(node);
+  tinygltf::Scene scene;
+  scene.nodes = {0};
+  return file.write(options, scene, out);
+}
+
+Result<void> encode_gltf_levels(std::span<const IndexedFaceSet> levels, const LevelWriteOptions& options,
+                                const WriteOptions& write, Output& out, Notes& notes) {
+  GltfFile file;
+  std::vector<Notes> of_level(levels.size());
+  std::vector<GltfMesh> writers;
+  writers.reserve(levels.size());
+  for (std::size_t k = 0; k < levels.size(); ++k) writers.emplace_back(file, levels[k], of_level[k]);
+  // Vertices are numbered from the coarsest level on, so that each has the first of those of the next.
+  CornerRows rows;
+  bool shared = options.shared_points;
+  for (std::size_t k = levels.size(); k-- > 0;) {
+    if (shared && !writers[k].split(rows)) shared = false;
+    if (!shared) writers[k].split();
+  }
+  const std::string name = valid_utf8(options.name);
+  const auto name_of_level = [&](std::size_t k) { return name + "_LOD" + std::to_string(k); };
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    writers[k].put(name_of_level(k));
+    // What holds for several levels is told once.
+    for (const FileNote& note : of_level[k])
+      if (std::ranges::find(notes, note.code, &FileNote::code) == notes.end()) notes.push_back(note);
+  }
+
+  tinygltf::Scene scene;
+  scene.nodes = {0};
+  std::vector<tinygltf::Node>& nodes = file.model.nodes;
+  const bool msft = options.layout == LevelLayout::kMsftLod;
+  if (!msft) {
+    nodes.push_back(node_at(write.offset));
+    nodes.back().name = name;
+  }
+  std::vector<int> ids;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    ids.push_back(static_cast<int>(nodes.size()));
+    nodes.push_back(node_at(msft ? write.offset : DVec3(0.0)));
+    nodes.back().mesh = static_cast<int>(k);
+    nodes.back().name = name_of_level(k);
+  }
+  if (msft && levels.size() > 1) {
+    tinygltf::Value::Array coarser, coverage;
+    for (std::size_t k = 1; k < ids.size(); ++k) coarser.emplace_back(ids[k]);
+    for (const double share : options.screen_coverage) coverage.emplace_back(share);
+    nodes[0].extensions["MSFT_lod"] =
+        tinygltf::Value(tinygltf::Value::Object{{"ids", tinygltf::Value(coarser)}});
+    if (!coverage.empty())
+      nodes[0].extras =
+          tinygltf::Value(tinygltf::Value::Object{{"MSFT_screencoverage", tinygltf::Value(coverage)}});
+    file.model.extensionsUsed.emplace_back("MSFT_lod");
+  } else if (!msft) {
+    nodes[0].children = ids;
+  }
+  return file.write(write, scene, out);
 }
 
 }  // namespace vkmesh::detail
