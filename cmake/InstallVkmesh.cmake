@@ -10,6 +10,13 @@ if(VKMESH_VULKAN)
 endif()
 install(TARGETS ${vkmesh_targets} EXPORT vkmesh-targets)
 install(EXPORT vkmesh-targets NAMESPACE vkmesh:: DESTINATION ${vkmesh_package})
+# A static library hands its own needs on.
+get_target_property(type vkmesh_host TYPE)
+find_package(meshoptimizer CONFIG QUIET)
+set(VKMESH_MESHOPTIMIZER OFF)
+if(TARGET meshoptimizer::meshoptimizer AND type STREQUAL STATIC_LIBRARY)
+  set(VKMESH_MESHOPTIMIZER ON)
+endif()
 configure_package_config_file(cmake/vkmesh-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/vkmesh-config.cmake
   INSTALL_DESTINATION ${vkmesh_package})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/vkmesh-config-version.cmake
