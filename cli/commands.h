@@ -28,6 +28,7 @@ void add_curvature(CLI::App& app, Program& program);
 void add_smooth(CLI::App& app, Program& program);
 void add_optimize(CLI::App& app, Program& program);
 void add_simplify(CLI::App& app, Program& program);
+void add_lod(CLI::App& app, Program& program);
 void add_remesh(CLI::App& app, Program& program);
 void add_delaunay(CLI::App& app, Program& program);
 void add_voronoi(CLI::App& app, Program& program);

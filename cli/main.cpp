@@ -35,7 +35,7 @@ int run(int argc, char** argv) {
       "'vkmesh SUBCOMMAND --help' shows the options of a subcommand and an example.");
   Program program;
   for (const auto add : {add_info, add_convert, add_normals, add_creases, add_curvature, add_smooth,
-                         add_optimize, add_simplify, add_remesh, add_delaunay, add_voronoi,
+                         add_optimize, add_simplify, add_lod, add_remesh, add_delaunay, add_voronoi,
 #ifdef VKMESH_HAS_VULKAN
                          add_render,
 #endif

@@ -114,6 +114,8 @@ Result<std::unique_ptr<Context>> open_context(Job& job) {
 /// An input and what is to be seen of it.
 struct Subject {
   std::string file, style, color;
+  std::size_t input = 0;              // which of the files
+  std::optional<std::size_t> level;   // of detail, where a file has several
   std::size_t points = 0, faces = 0;  // of the file
   IndexedFaceSet mesh;                // triangles
   std::optional<PolygonSoup> soup;    // instead of the mesh
@@ -445,9 +447,10 @@ Result<Picture> draw(Job& job, Context& context, const Subject& subject, const C
   return job.timed("download", [&] { return target.download(); });
 }
 
-std::vector<std::string> caption_of(const Subject& subject, const RenderOptions& options, std::size_t index) {
+std::vector<std::string> caption_of(const Subject& subject, const RenderOptions& options) {
   std::string first = std::filesystem::path(subject.file).filename().string();
-  if (!options.captions.empty()) first = options.captions[index];
+  if (!options.captions.empty()) first = options.captions[subject.input];
+  if (subject.level) first += ", level " + std::to_string(*subject.level);
   std::string second =
       subject.faces > 0 ? count_of(subject.faces, "face") : count_of(subject.points, "point");
   if (subject.error) {
@@ -477,28 +480,47 @@ Result<std::vector<Subject>> read_subjects(Job& job, const RenderOptions& option
       VKMESH_TRY(MeshFile read, job.timed("read", [&] {
         return read_mesh(inputs[i], ReadOptions{job.progress("reading"), DVec3(0.0), true});
       }));
+      // All of them are shown.
+      std::erase_if(read.notes, [](const FileNote& note) { return note.code == "dropped.levels"; });
       VKMESH_CHECK(job.note_differences(inputs[i], read.notes));
       files.emplace(inputs[i], std::move(read));
     }
     const bool again = std::find(inputs.begin() + static_cast<std::ptrdiff_t>(i) + 1, inputs.end(),
                                  inputs[i]) != inputs.end();
     MeshFile file = again ? files.at(inputs[i]) : std::move(files.at(inputs[i]));
-    Subject subject;
-    subject.file = inputs[i];
-    subject.style = options.styles[options.styles.size() == 1 ? 0 : i];
-    subject.color = options.colors[options.colors.size() == 1 ? 0 : i];
-    const std::string format = name_of(file.format);
-    VKMESH_TRY(subject, job.timed("compute", [&] {
-      return prepare(job, std::move(file), std::move(subject), options);
-    }));
-    job.json()["input"].push_back({{"file", subject.file},
-                                   {"format", format},
-                                   {"points", subject.points},
-                                   {"faces", subject.faces},
-                                   {"soup", subject.soup.has_value()}});
-    job.row("input", subject.file + "  (" + count_of(subject.points, subject.soup ? "corner" : "point") +
-                         ", " + count_of(subject.faces, "face") + "; " + format + ")");
-    subjects.push_back(std::move(subject));
+    const std::size_t levels = file.levels;
+    for (std::size_t level = 0; level < levels; ++level) {
+      if (level > 0) {
+        ReadOptions of_level;
+        of_level.progress = job.progress("reading");
+        of_level.offset = file.offset;
+        of_level.level = level;
+        VKMESH_TRY(file, job.timed("read", [&] { return read_mesh(inputs[i], of_level); }));
+      }
+      Subject subject;
+      subject.file = inputs[i];
+      subject.input = i;
+      if (levels > 1) subject.level = level;
+      subject.style = options.styles[options.styles.size() == 1 ? 0 : i];
+      subject.color = options.colors[options.colors.size() == 1 ? 0 : i];
+      const std::string format = name_of(file.format);
+      const DVec3 offset = file.offset;
+      VKMESH_TRY(subject, job.timed("compute", [&] {
+        return prepare(job, std::move(file), std::move(subject), options);
+      }));
+      file.offset = offset;
+      Json entry = {{"file", subject.file},
+                    {"format", format},
+                    {"points", subject.points},
+                    {"faces", subject.faces},
+                    {"soup", subject.soup.has_value()}};
+      if (subject.level) entry["level"] = level;
+      job.json()["input"].push_back(std::move(entry));
+      job.row("input", subject.file + (subject.level ? ", level " + std::to_string(level) : "") + "  (" +
+                           count_of(subject.points, subject.soup ? "corner" : "point") + ", " +
+                           count_of(subject.faces, "face") + "; " + format + ")");
+      subjects.push_back(std::move(subject));
+    }
   }
   return subjects;
 }
@@ -562,7 +584,7 @@ Result<void> run(Job& job, const RenderOptions& options) {
     }
     cells.push_back({std::move(whole), {}});
     const bool captioned = !options.no_caption && (subjects.size() > 1 || !options.captions.empty());
-    if (captioned) cells.back().caption = caption_of(subject, options, i);
+    if (captioned) cells.back().caption = caption_of(subject, options);
     Json entry = subject.json;
     entry["eye"] = {camera.eye.x, camera.eye.y, camera.eye.z};
     job.json()["result"]["pictures"].push_back(std::move(entry));
@@ -586,7 +608,8 @@ void add_render(CLI::App& app, Program& program) {
   command->footer(
       "Drawn by Vulkan without a window. Several meshes make a contact sheet with a caption under each, seen "
       "by "
-      "the same camera.\nQuantities: curvature (signed mean curvature), dihedral (largest angle between "
+      "the same camera; of a glTF file with levels of detail each is shown.\nQuantities: curvature (signed "
+      "mean curvature), dihedral (largest angle between "
       "faces "
       "around a point), crease (sharp edges),\ncomponent, quality (of triangles), valence; channel:NAME "
       "shows "

@@ -382,6 +382,53 @@ Result<void> Job::write(SvgPicture picture) {
   return {};
 }
 
+Result<void> Job::write_levels(std::vector<IndexedFaceSet> levels,
+                               const std::optional<LevelWriteOptions>& one_file,
+                               const std::vector<std::filesystem::path>& files) {
+  write_options_.offset = offset_;
+  write_options_.material_libraries = material_libraries_;
+  std::optional<LevelWriteOptions> level_options = one_file;
+  std::vector<std::string> names = names_to_split(levels.front());
+  // The writer of levels splits what glTF has names for itself, so that levels share vertices.
+  if (one_file)
+    std::erase_if(names, [](const std::string& n) { return n == "normal" || n == "uv" || n == "color"; });
+  if (!names.empty()) {
+    if (level_options) level_options->shared_points = false;
+    for (IndexedFaceSet& level : levels) {
+      VKMESH_TRY(level, timed("write", [&] { return split_at_seams(std::move(level), names); }));
+    }
+  }
+  const auto write = [&](bool for_the_notes) -> Result<std::vector<FileNote>> {
+    return timed("write", [&]() -> Result<std::vector<FileNote>> {
+      const fs::path nowhere = "/dev/null";
+      if (level_options)
+        return vkmesh::write_levels(for_the_notes ? nowhere : fs::path(options_.output), levels,
+                                    *level_options, write_options_);
+      return write_meshes(for_the_notes ? std::vector<fs::path>(files.size(), nowhere) : files, levels,
+                          write_options_);
+    });
+  };
+  if (options_.on_loss == "fail") {
+    VKMESH_TRY(const std::vector<FileNote> losses, write(true));
+    VKMESH_CHECK(note_differences(options_.output, losses));
+  }
+  VKMESH_TRY(const std::vector<FileNote> differences, write(false));
+  VKMESH_CHECK(note_differences(options_.output, differences));
+  const auto& w = write_options_;
+  const std::vector<fs::path> written = one_file ? std::vector<fs::path>{options_.output} : files;
+  json_["output"] = {{"files", Json::array()},
+                     {"format", name_of(w.format)},
+                     {"encoding", name_of(w.encoding)},
+                     {"gzip", w.gzip}};
+  std::string list;
+  for (const fs::path& file : written) {
+    json_["output"]["files"].push_back(file.string());
+    list += (list.empty() ? "" : ", ") + file.string();
+  }
+  row("output", list + "  (" + count_of(levels.size(), "level") + ")");
+  return {};
+}
+
 Result<void> Job::print() {
   progress_.erase();
   book("total", milliseconds_since(start_));

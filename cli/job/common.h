@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -132,6 +133,10 @@ class Job {
 
   /// Writes the output as an SVG, and reports its counts.
   [[nodiscard]] Result<void> write(SvgPicture picture);
+  /// Writes levels of detail, the finest first: into one glTF file, the output, or each into one of `files`.
+  [[nodiscard]] Result<void> write_levels(std::vector<IndexedFaceSet> levels,
+                                          const std::optional<LevelWriteOptions>& one_file,
+                                          const std::vector<std::filesystem::path>& files);
 
   /// A sentence about something that was left out or not used.
   void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
