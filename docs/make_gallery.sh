@@ -81,3 +81,7 @@ awk -v n=20000 -v hills=1 -f docs/points.awk </dev/null >"$work/hills.xyz"
 "$vkmesh" simplify "$work/terrain.ply" "$work/simple.ply" --ratio 0.05 --quiet
 "$vkmesh" render "$work/terrain.ply" "$work/simple.ply" "$out/terrain.png" --size 560x360 --columns 2 --up z --elevation 35 \
   --azimuth 25 --style shaded,shaded-wire --caption "20,000 heights" --caption "5 %"
+
+# Levels of detail, of one file.
+"$vkmesh" lod "$dragon" "$work/dragon.glb" --levels 6 --reduction 0.3 --quiet
+"$vkmesh" render "$work/dragon.glb" "$out/levels.png" --size 380x300 --columns 3 --style flat --caption dragon

@@ -96,6 +96,27 @@ for mesh in "${meshes[@]}"; do
   fi
 done
 
+# ---- Levels of detail: "file levels triangles" of each; what knows no MSFT_lod sees one level
+levels=()
+# lod NAME MESH LEVELS [options]
+lod() {
+  local name=$1 mesh=$2 shown=$3 counts
+  shift 3
+  counts=$("$vkmesh" lod "$mesh" "$work/$name" --levels 4 --json "$@" 2>"$work/error") || {
+    fails "vkmesh lod $mesh $name: $(cat "$work/error")"
+    return 0
+  }
+  counts=$(grep -A99 '"levels"' <<<"$counts" | tr -d ' ,"' | awk -F: '$1 == "faces" { print $2; exit }')
+  levels+=("$work/$name" "$shown" "$counts")
+}
+for mesh in "${meshes[@]}"; do
+  name=$(basename "${mesh%.*}")
+  case "$name" in cloud | cube*) continue ;; esac
+  lod "$name-nodes.glb" "$mesh" 4
+  lod "$name-shared.gltf" "$mesh" 4 --operation half-edge-collapse
+  lod "$name-msft.glb" "$mesh" 1 --operation half-edge-collapse --layout msft
+done
+
 # files KIND...: how many triples there are
 files() {
   local all=()
@@ -110,12 +131,12 @@ files() {
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
   absent gltf-validator "node or npm is not installed"
 else
-  if ! cmp -s $here/package-lock.json $modules/package-lock.json || [ ! -e $modules/node_modules/gltf-validator ]; then
+  if ! cmp -s $here/package-lock.json $modules/package-lock.json || [ ! -e $modules/node_modules/three ]; then
     mkdir -p $modules
     cp $here/package.json $here/package-lock.json $modules
     (cd $modules && npm ci --no-audit --no-fund --ignore-scripts >npm.log 2>&1) || rm -f $modules/package-lock.json
   fi
-  if [ ! -e $modules/node_modules/gltf-validator ] || [ ! -e $modules/package-lock.json ]; then
+  if [ ! -e $modules/node_modules/three ] || [ ! -e $modules/package-lock.json ]; then
     absent gltf-validator "npm could not install it: $(tail -n 1 $modules/npm.log 2>/dev/null)"
   else
     # Seams make 325 vertices of the torus, and the validator counts them for each of its three materials.
@@ -126,8 +147,14 @@ else
       case "$1" in */torus.*) arguments+=("$1" "$3" 975) ;; *) arguments+=("$1" "$3" "$2") ;; esac
       shift 3
     done
+    for ((i = 0; i < ${#levels[@]}; i += 3)); do arguments+=("${levels[i]}" - -); done
     if node $here/validate_gltf.cjs $modules/node_modules "${arguments[@]}"; then
-      echo "gltf-validator: $(files gltf) files without errors or warnings, triangles and vertices agree"
+      echo "gltf-validator: $((${#arguments[@]} / 3)) files without errors or warnings, triangles and vertices agree"
+    else
+      failed=1
+    fi
+    if node $here/count_levels.mjs $modules/node_modules "${levels[@]}"; then
+      echo "three: $((${#levels[@]} / 3)) files of levels load, and have as many as were written"
     else
       failed=1
     fi
