@@ -34,10 +34,7 @@ Result<ClipPolygon> ClipPolygon::of(std::span<const DVec2> polygon) {
     const int side = orientation(a, b, c);
     const bool reverses = is_less(a, b) != is_less(b, c);
     reversals += reverses ? 1 : 0;
-    if (side == 0) {
-      convex = convex && !reverses;
-      continue;
-    }
+    if (side == 0) continue;
     convex = convex && side != -turn;
     turn = side;
     kept.push_back(b);
