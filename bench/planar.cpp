@@ -214,7 +214,7 @@ std::size_t by_cgal_to_arrays(const Points& points) {
 #endif
 
 #ifdef VKMESH_BENCH_BOOST
-/// Of whole numbers, which is what it takes: 30 bits for each coordinate. Its rays are not clipped.
+/// It takes whole numbers: 30 bits for each coordinate. Its rays are not clipped.
 std::size_t by_boost(const Points& points) {
   const std::vector<DVec2> bounds = bounds_of_sites(points);
   const double scale = 0x1p30 / std::max(bounds[2].x - bounds[0].x, bounds[2].y - bounds[0].y);

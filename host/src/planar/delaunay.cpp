@@ -156,7 +156,7 @@ class Insertion {
 
  private:
   static constexpr std::size_t kTrianglesAtOnce = 1 << 14;
-  /// Of a walk within limits, which does not end where some edges around are not Delaunay.
+  /// Steps of a walk within limits, which may go in circles where edges are not Delaunay.
   static constexpr std::size_t kMostSteps = 1 << 12;
 
   struct Found {
