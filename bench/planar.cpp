@@ -1,5 +1,6 @@
 // vkmesh_bench_planar [POINTS] [REPETITIONS] [FAMILY] [THREADS]: Delaunay triangulations beside CGAL's and
-// Voronoi diagrams beside Boost.Polygon's, as a table in Markdown.
+// Voronoi diagrams beside Boost.Polygon's, as a table in Markdown. FAMILY is one of points, or "constrained":
+// a closed line among uniform ones, and its refinement.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -16,10 +17,16 @@
 
 #include <tbb/global_control.h>
 
+#include <vkmesh/planar/constrained_delaunay.h>
 #include <vkmesh/planar/delaunay.h>
 #include <vkmesh/planar/voronoi.h>
 
 #ifdef VKMESH_BENCH_CGAL
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_criteria_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
+#include <CGAL/Delaunay_mesh_vertex_base_2.h>
+#include <CGAL/Delaunay_mesher_2.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
@@ -229,6 +236,116 @@ std::size_t by_boost(const Points& points) {
 }
 #endif
 
+/// Uniform points, the first of which are a closed line like a coast, of which a hundredth are its segments.
+struct ConstrainedPoints {
+  Points points;
+  std::vector<PointPair> outline;
+};
+ConstrainedPoints constrained_points(std::size_t n) {
+  ConstrainedPoints result;
+  std::mt19937_64 random(1);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  const auto sides = static_cast<std::uint32_t>(n / 100);
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double a = 6.283185307179586 * i / sides, r = 0.4 + 0.05 * std::cos(9 * a) + 0.0001 * unit();
+    result.points.emplace_back(0.5 + r * std::cos(a), 0.5 + r * std::sin(a));
+    result.outline.push_back({i, (i + 1) % sides});
+  }
+  while (result.points.size() < n) {
+    const double x = unit();
+    result.points.emplace_back(x, unit());
+  }
+  return result;
+}
+
+/// Edges that are neither constraints nor Delaunay.
+std::size_t wrong_edges(const ConstrainedTriangulation& made) {
+  const HalfEdgeMesh& mesh = made.mesh;
+  std::vector<bool> kept(mesh.half_edge_count(), false);
+  for (const HalfEdgeId h : made.constrained_edges) kept[h.index] = true;
+  std::size_t wrong = 0;
+  const auto at = [&](VertexId v) { return made.positions[v.index]; };
+  mesh.for_each_edge([&](HalfEdgeId h) {
+    const HalfEdgeId t = mesh.twin(h);
+    if (!t.valid() || kept[h.index]) return;
+    wrong += in_circle_perturbed(at(mesh.origin(h)), at(mesh.target(h)), at(mesh.origin(mesh.previous(h))),
+                                 at(mesh.origin(mesh.previous(t)))) >= 0
+                 ? 1
+                 : 0;
+  });
+  return wrong;
+}
+
+#ifdef VKMESH_BENCH_CGAL
+using ConstrainedByCgal = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel,
+    CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_base_2<Kernel>,
+                                         CGAL::Delaunay_mesh_face_base_2<Kernel>>,
+    CGAL::No_constraint_intersection_requiring_constructions_tag>;
+
+ConstrainedByCgal constrained_by_cgal(const ConstrainedPoints& input) {
+  std::vector<Kernel::Point_2> points;
+  points.reserve(input.points.size());
+  for (const DVec2 p : input.points) points.emplace_back(p.x, p.y);
+  std::vector<std::pair<std::size_t, std::size_t>> segments;
+  for (const auto& [a, b] : input.outline) segments.emplace_back(a, b);
+  ConstrainedByCgal made;
+  made.insert(points.begin(), points.end());
+  made.insert_constraints(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(segments.size()),
+                          segments.begin(), segments.end());
+  return made;
+}
+#endif
+
+/// A closed line among points, then what it encloses, refined.
+void constrained_rows(std::size_t n, int repetitions) {
+  const ConstrainedPoints input = constrained_points(n);
+  ConstrainedDelaunayOptions options;
+  options.outlines = input.outline;
+  const std::string family = "uniform, " + std::to_string(input.outline.size()) + " segments";
+  std::optional<ConstrainedTriangulation> kept;
+  const auto ours = [&] {
+    kept.reset();
+    auto made = constrained_delaunay(input.points, {}, options);
+    if (!made) stop(made.error());
+    if (const auto valid = validate(made->mesh); !valid) stop(valid.error());
+    kept = std::move(*made);
+    return kept->mesh.face_count();
+  };
+  Row row = measured(repetitions, ours);
+  print(family.c_str(), "vkmesh, to validated half-edges", n, row, std::to_string(wrong_edges(*kept)));
+#ifdef VKMESH_BENCH_CGAL
+  print(family.c_str(), "CGAL, triangulation kept", n,
+        measured(repetitions, [&] { return constrained_by_cgal(input).number_of_faces(); }), "");
+#endif
+  // The bound of CGAL's default criteria.
+  options.domain = DelaunayDomain::kEvenOdd;
+  options.refinement.emplace().min_angle = std::asin(std::sqrt(0.125));
+  row = measured(repetitions, ours);
+  const std::string refined = "the same, inside, refined to 20.7 degrees";
+  print(
+      refined.c_str(),
+      ("vkmesh, to validated half-edges (" + std::to_string(kept->refined_points) + " points added)").c_str(),
+      n, row, std::to_string(wrong_edges(*kept)));
+#ifdef VKMESH_BENCH_CGAL
+  std::size_t added = 0;
+  row = measured(repetitions, [&] {
+    ConstrainedByCgal made = constrained_by_cgal(input);
+    const std::size_t before = made.number_of_vertices();
+    CGAL::Delaunay_mesher_2<ConstrainedByCgal, CGAL::Delaunay_mesh_criteria_2<ConstrainedByCgal>> mesher(
+        made);
+    mesher.refine_mesh();
+    added = made.number_of_vertices() - before;
+    std::size_t inside = 0;
+    for (auto f = made.finite_faces_begin(); f != made.finite_faces_end(); ++f)
+      inside += f->is_in_domain() ? 1 : 0;
+    return inside;
+  });
+  print(refined.c_str(), ("CGAL, triangulation kept (" + std::to_string(added) + " points added)").c_str(), n,
+        row, "");
+#endif
+}
+
 void all(std::size_t n, int repetitions, const std::string& only, std::size_t threads) {
   const Machine machine = describe_machine();
   std::printf("- %s, %s\n- %s", machine.processor.c_str(), machine.system.c_str(), machine.compiler.c_str());
@@ -283,6 +400,7 @@ void all(std::size_t n, int repetitions, const std::string& only, std::size_t th
           measured(repetitions, [&] { return by_boost(points); }), "");
 #endif
   }
+  if (only.empty() || only == "constrained") constrained_rows(n, repetitions);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Delaunay triangulations of CGAL beside those of vkmesh, triangle for triangle, and its exact predicates
-// beside ours.
+// Delaunay triangulations of CGAL beside those of vkmesh, triangle for triangle, with constraints, too, and
+// its exact predicates beside ours.
 //   cgal_delaunay [POINTS]    so many points of each family, default 20000
 // Prints one line of totals; every disagreement goes to standard error and fails.
 #include <algorithm>
@@ -14,12 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Gmpq.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <vkmesh/planar/constrained_delaunay.h>
 #include <vkmesh/planar/delaunay.h>
 
 namespace {
@@ -27,6 +29,10 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Vertices = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
 using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertices>>;
+using Constrained = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel,
+    CGAL::Triangulation_data_structure_2<Vertices, CGAL::Constrained_triangulation_face_base_2<Kernel>>,
+    CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Exact = CGAL::Simple_cartesian<CGAL::Gmpq>;
 using vkmesh::DVec2;
 using Points = std::vector<DVec2>;
@@ -166,6 +172,70 @@ int compare_triangulations(std::size_t n, std::size_t& triangles) {
   return bad;
 }
 
+/// A third of the edges of the Delaunay triangulation of some of the points: none crosses another.
+std::vector<vkmesh::PointPair> constraints_of(const Points& points, std::mt19937_64& random) {
+  std::vector<vkmesh::PointPair> constraints;
+  Points some;
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (random() % 20 == 0) {
+      some.push_back(points[i]);
+      numbers.push_back(i);
+    }
+  const auto made = vkmesh::delaunay(some);
+  if (!made) return {};
+  made->mesh.for_each_edge([&](vkmesh::HalfEdgeId h) {
+    if (random() % 3 > 0) return;
+    const auto number = [&](vkmesh::VertexId v) { return numbers[made->point_of_vertex[v.index]]; };
+    constraints.push_back({number(made->mesh.origin(h)), number(made->mesh.target(h))});
+  });
+  return constraints;
+}
+
+int compare_constrained(std::size_t n, std::size_t& triangles, std::size_t& edges) {
+  int bad = 0;
+  std::mt19937_64 random(9);
+  for (const auto& [name, points] : families(n)) {
+    const auto constraints = constraints_of(points, random);
+    const auto ours = vkmesh::constrained_delaunay(points, constraints);
+    if (!ours) {
+      std::fprintf(stderr, "%s, constrained: %s\n", name.c_str(), ours.error().describe().c_str());
+      ++bad;
+      continue;
+    }
+    Constrained theirs;
+    std::vector<Constrained::Vertex_handle> handles(ours->positions.size());
+    for (std::uint32_t v = 0; v < handles.size(); ++v) {
+      handles[v] = theirs.insert({ours->positions[v].x, ours->positions[v].y});
+      handles[v]->info() = v;
+    }
+    for (const auto& [a, b] : constraints) {
+      const auto u = handles[ours->vertex_of_point[a]], v = handles[ours->vertex_of_point[b]];
+      if (u != v && theirs.dimension() == 2) theirs.insert_constraint(u, v);
+    }
+    Triangles mine, other;
+    const auto corners = ours->mesh.origins();
+    for (std::size_t f = 0; f < ours->mesh.face_count(); ++f)
+      add(mine, {corners[3 * f], corners[3 * f + 1], corners[3 * f + 2]});
+    for (auto f = theirs.finite_faces_begin(); f != theirs.finite_faces_end(); ++f)
+      add(other, {f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+    std::sort(mine.begin(), mine.end());
+    std::sort(other.begin(), other.end());
+    std::size_t their_edges = 0;
+    for (auto e = theirs.constrained_edges_begin(); e != theirs.constrained_edges_end(); ++e) ++their_edges;
+    triangles += mine.size();
+    edges += ours->constrained_edges.size();
+    if (mine == other && their_edges == ours->constrained_edges.size()) continue;
+    ++bad;
+    Triangles common;
+    std::set_intersection(mine.begin(), mine.end(), other.begin(), other.end(), std::back_inserter(common));
+    std::fprintf(stderr, "%s, constrained: %zu triangles, CGAL has %zu, %zu of both; %zu edges, CGAL %zu\n",
+                 name.c_str(), mine.size(), other.size(), common.size(), ours->constrained_edges.size(),
+                 their_edges);
+  }
+  return bad;
+}
+
 /// Points on a grid with steps of many sizes, now and then moved by the least there is: many are collinear or
 /// cocircular, or nearly.
 int compare_predicates(std::size_t& zeros) {
@@ -197,10 +267,11 @@ int compare_predicates(std::size_t& zeros) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  std::size_t triangles = 0, zeros = 0;
-  const int bad =
-      compare_predicates(zeros) +
-      compare_triangulations(count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 20000, triangles);
-  std::printf("%zu triangles, 200000 predicates (%zu of them 0)\n", triangles, zeros);
+  const std::size_t points = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 20000;
+  std::size_t triangles = 0, zeros = 0, constrained = 0, edges = 0;
+  const int bad = compare_predicates(zeros) + compare_triangulations(points, triangles) +
+                  compare_constrained(points, constrained, edges);
+  std::printf("%zu triangles, %zu with %zu edges of constraints, 200000 predicates (%zu of them 0)\n",
+              triangles, constrained, edges, zeros);
   return bad == 0 ? 0 : 1;
 }

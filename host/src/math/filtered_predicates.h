@@ -17,6 +17,10 @@ namespace vkmesh::detail {
 /// in_circle_perturbed() of points for which in_circle() is 0.
 [[nodiscard]] int perturbed_cocircular(DVec2 a, DVec2 b, DVec2 c, DVec2 d);
 
+/// Where the segments ab and cd cross, each end of one strictly on another side of the other. Each coordinate
+/// is off by less than 0.51 units in the last place, and within the bounds of both.
+[[nodiscard]] DVec2 crossing_of(DVec2 a, DVec2 b, DVec2 c, DVec2 d);
+
 /// Whether products of four differences of such coordinates neither overflow nor underflow, so that the
 /// bounds of rounding errors hold: 0, or from 2^-198 to 2^250 in size.
 [[nodiscard]] inline bool in_filter_range(double x) {

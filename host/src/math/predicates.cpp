@@ -85,6 +85,21 @@ int perturbed_cocircular(DVec2 a, DVec2 b, DVec2 c, DVec2 d) {
   return 0;
 }
 
+DVec2 crossing_of(DVec2 a, DVec2 b, DVec2 c, DVec2 d) {
+  // The mean of c and d by the areas beyond, of d and of c, over the line through a and b.
+  const WholePoints<5> points({a, b, c, d, DVec2(0, 0)});
+  const auto w = points.vectors<5>({{{0, 1}, {0, 2}, {0, 3}, {4, 2}, {4, 3}}});  // ab, ac, ad, c, d
+  const WholeNumber beyond_c = w[0] * w[3] - w[1] * w[2], beyond_d = w[0] * w[5] - w[1] * w[4];
+  const WholeNumber all = beyond_c - beyond_d;
+  const auto mean = [&](const WholeNumber& of_c, const WholeNumber& of_d) {
+    return WholeNumber::quotient(beyond_c * of_d - beyond_d * of_c, all, points.unit());
+  };
+  const auto within = [](double x, double p, double q, double r, double s) {
+    return std::clamp(x, std::max(std::min(p, q), std::min(r, s)), std::min(std::max(p, q), std::max(r, s)));
+  };
+  return {within(mean(w[6], w[8]), a.x, b.x, c.x, d.x), within(mean(w[7], w[9]), a.y, b.y, c.y, d.y)};
+}
+
 }  // namespace detail
 
 int orientation(DVec2 a, DVec2 b, DVec2 c) {

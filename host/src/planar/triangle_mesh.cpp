@@ -29,7 +29,8 @@ void sort_by_second(std::span<Face> faces) {
 
 }  // namespace
 
-HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count) {
+HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count,
+                            RenumberedHalfEdges* numbers) {
   const std::uint32_t* const origin = triangles.origins.data();
   const std::size_t count = triangles.count;
   // The corner at the least vertex; 3 for triangles that are left out. kInvalid is the greatest number.
@@ -103,6 +104,7 @@ HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count)
     }
   });
   triangles.twins = {};
+  if (numbers != nullptr) *numbers = RenumberedHalfEdges(std::move(renumbered));
   return HalfEdgeMesh::from_twins(std::move(origins), std::move(twins), vertex_count);
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <vkmesh/mesh/half_edge_mesh.h>
 
@@ -46,8 +48,28 @@ struct PlanarTriangles {
   }
 };
 
+/// The half-edges of a mesh by those of the triangles that it was made of.
+class RenumberedHalfEdges {
+ public:
+  RenumberedHalfEdges() = default;
+  /// For each triangle 4 times its face, and its corner that comes first there; kInvalid where it was left
+  /// out.
+  explicit RenumberedHalfEdges(std::vector<std::uint32_t> of_triangle)
+      : of_triangle_(std::move(of_triangle)) {}
+  /// kInvalid for triangles that were left out.
+  [[nodiscard]] std::uint32_t operator()(std::uint32_t h) const {
+    const std::uint32_t here = of_triangle_[h >> 2];
+    return here == kInvalid ? kInvalid : 3 * (here >> 2) + kCorner[here & 3u][h & 3u];
+  }
+
+ private:
+  static constexpr std::array<std::array<std::uint8_t, 3>, 3> kCorner = {{{0, 1, 2}, {2, 0, 1}, {1, 2, 0}}};
+  std::vector<std::uint32_t> of_triangle_;
+};
+
 /// The mesh of the triangles without a corner at infinity. Faces begin with their least vertex, and are
 /// ordered by it and the vertex after it. Takes the triangles apart. O(n).
-HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count);
+HalfEdgeMesh canonical_mesh(PlanarTriangles triangles, std::size_t vertex_count,
+                            RenumberedHalfEdges* numbers = nullptr);
 
 }  // namespace vkmesh::detail
