@@ -85,3 +85,12 @@ awk -v n=20000 -v hills=1 -f docs/points.awk </dev/null >"$work/hills.xyz"
 # Levels of detail, of one file.
 "$vkmesh" lod "$dragon" "$work/dragon.glb" --levels 6 --reduction 0.3 --quiet
 "$vkmesh" render "$work/dragon.glb" "$out/levels.png" --size 380x300 --columns 3 --style flat --caption dragon
+# An outline with a hole and a line inside, and the same refined.
+awk -f docs/coast.awk </dev/null >"$work/coast.obj"
+"$vkmesh" delaunay "$work/coast.obj" "$work/coast.ply" --constraints "$work/coast.obj" --inside even-odd --quiet
+"$vkmesh" delaunay "$work/coast.obj" "$work/refined.ply" --constraints "$work/coast.obj" --inside even-odd --min-angle 28 --quiet
+"$vkmesh" delaunay "$work/coast.obj" "$work/even.ply" --constraints "$work/coast.obj" --inside even-odd --min-angle 28 \
+  --max-area 0.1 --quiet
+"$vkmesh" render "$work/coast.ply" "$work/refined.ply" "$work/even.ply" "$out/refined.png" --size 420x420 --columns 3 \
+  --orthographic --azimuth 0 --elevation 0 --style shaded-wire --caption constrained --caption "28 degrees" \
+  --caption "28 degrees, area 0.1"

@@ -97,15 +97,15 @@ struct ConstrainedTriangulation {
 /// nothing.
 ///
 /// The triangles are a function of the places and the constraints, whatever their order. Points are put in as
-/// by delaunay(), then each segment: the triangles that it crosses are replaced, and edges swapped (after
-/// M. V. Anglada, "An improved incremental algorithm for constructing restricted Delaunay triangulations",
-/// 1997). About O(n log n) where segments cross few edges, one thread. Memory: about 130 bytes a vertex.
+/// by delaunay(), then each segment: the triangles that it crosses are replaced (M. V. Anglada, "An improved
+/// incremental algorithm for constructing restricted Delaunay triangulations", 1997), and edges swapped.
+/// About O(n log n) where segments cross few edges, one thread. Memory: about 130 bytes a vertex.
 ///
 /// `split_crossings`: where two constraints cross in their interior, a vertex is put there, the crossing
-/// rounded, or an existing vertex where it rounds to that; both then go through it. Afterwards no two
-/// constraints cross, each is a chain of edges from its one end to the other within its bounds, and a chain
-/// of k splits lies within k roundings of a coordinate of its segment. Rounding may move it past other
-/// vertices.
+/// rounded once, or a vertex is taken that lies within a few units in the last place; both then go through
+/// it. Afterwards no two constraints cross, and each is a chain of edges from its one end to the other, which
+/// lies within some roundings of its segment, but may pass other vertices on the other side. Constraints that
+/// come so near to each other that rounding makes them cross again and again are refused.
 ///
 /// Domain: a vertex at which it touches itself, so that its triangles form several fans, is repeated.
 ///
