@@ -85,6 +85,7 @@ awk -v n=20000 -v hills=1 -f docs/points.awk </dev/null >"$work/hills.xyz"
 # Levels of detail, of one file.
 "$vkmesh" lod "$dragon" "$work/dragon.glb" --levels 6 --reduction 0.3 --quiet
 "$vkmesh" render "$work/dragon.glb" "$out/levels.png" --size 380x300 --columns 3 --style flat --caption dragon
+
 # An outline with a hole and a line inside, and the same refined.
 awk -f docs/coast.awk </dev/null >"$work/coast.obj"
 "$vkmesh" delaunay "$work/coast.obj" "$work/coast.ply" --constraints "$work/coast.obj" --inside even-odd --quiet
