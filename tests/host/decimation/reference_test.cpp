@@ -108,7 +108,7 @@ TEST_CASE("decimation in the exact order is that of the reference", "[decimate][
   for (const auto operation : kOperations) {
     std::size_t cases = 0, same = 0;
     for (const auto boundary : {DecimateBoundary::kInShape, DecimateBoundary::kKept, DecimateBoundary::kFree})
-      for (const std::uint32_t seed : {1u, 2u, 3u})
+      for (std::uint32_t seed = 1; seed <= (test::kSanitized ? 1u : 3u); ++seed)
         for (const IndexedFaceSet& mesh :
              {test::icosphere(2), test::torus(12, 10), test::grid(9, 9), test::cylinder(6, 9)})
           for (const double ratio : {0.5, 0.2}) {

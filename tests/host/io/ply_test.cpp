@@ -282,7 +282,7 @@ const std::vector<std::size_t> kBlockSizes = {1, 13, 100, 1000};
 
 // The address sanitizer makes each of many small parses ten times as long.
 #ifdef VKMESH_ADDRESS_SANITIZER
-constexpr std::size_t kStride = 11;
+constexpr std::size_t kStride = 37;
 #else
 constexpr std::size_t kStride = 1;
 #endif
