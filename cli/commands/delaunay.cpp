@@ -21,6 +21,7 @@
 #include <vkmesh/planar/delaunay.h>
 
 #include "commands.h"
+#include "job/channels.h"
 #include "job/constraint_file.h"
 #include "job/triangle_angles.h"
 #include "passes/backend.h"
@@ -239,19 +240,20 @@ Result<void> run(Job& job, const DelaunayChoice& choice) {
     }
 
   if (input.face_count() > 0 && choice.constraints != job.options().input)
-    job.note("the faces of the file were left out: only its points count");
+    VKMESH_CHECK(job.note_dropped("faces", "the faces were left out: only the points count"));
   if (mesh.face_count() == 0)
     job.note(choice.domain == DelaunayDomain::kConvexHull
                  ? "there are no triangles, since all points lie on one line"
                  : "there are no triangles: no closed line winds around any");
-  if (!choice.keep_heights && has_heights && !job.draws()) job.note("heights were left out; --z keeps them");
+  if (!choice.keep_heights && has_heights && !job.draws())
+    VKMESH_CHECK(job.note_dropped("heights", "heights were left out; --z keeps them"));
   if (choice.keep_heights && other_heights > 0)
-    job.note(count_of(other_heights, "point") +
-             " above or below another were left out: the first height of a place counts");
+    VKMESH_CHECK(job.note_dropped(
+        "heights", count_of(other_heights, "point") +
+                       " above or below another were left out: the first height of a place counts"));
   if (turned_over > 0)
     job.note(count_of(turned_over, "triangle") + " without area, or turned over, in single precision");
-  if (std::erase_if(mesh.point_channels, [](const Channel& c) { return c.name == "normal"; }) > 0)
-    job.note("normals were left out; vkmesh normals makes new ones");
+  VKMESH_CHECK(drop_normals(job, {&mesh.point_channels}));
   VKMESH_TRY(const TriangleAngles angles, triangle_angles(made.mesh, mesh.points));
   const bool whole = choice.domain == DelaunayDomain::kConvexHull;
   if (!whole && mesh.face_count() > 0) drop_isolated(mesh);

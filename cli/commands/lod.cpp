@@ -157,7 +157,9 @@ Result<void> run(Job& job, const LodOptions& options) {
                           {"stop", name_of(chain.last.stop)},
                           {"levels", nullptr}};
   report(job, chain, bounds.diagonal());
-  if (isolated > 0) job.note(count_of(isolated, "point") + " that no face uses left out");
+  if (isolated > 0)
+    VKMESH_CHECK(
+        job.note_dropped("isolated_points", count_of(isolated, "point") + " that no face uses left out"));
   if (!options.points_stay()) {
     std::string unmixed;
     for (const std::string& channel : input.attributes.unmixed_points())

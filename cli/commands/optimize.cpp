@@ -17,6 +17,7 @@
 
 #include "commands.h"
 #include "job/channel_numbers.h"
+#include "job/channels.h"
 #include "job/triangle_angles.h"
 #include "passes/backend.h"
 
@@ -74,17 +75,6 @@ Result<std::vector<WeightedSwapCost>> costs_of(const std::vector<std::string>& g
 struct Borders {
   std::vector<std::uint32_t> corners, faces;
 };
-
-/// Normals of corners and faces differ at each edge and would not fit the new ones.
-void drop_normals(Job& job, IndexedFaceSet& mesh) {
-  std::size_t dropped = 0;
-  for (auto* channels : {&mesh.corner_channels, &mesh.face_channels})
-    dropped += std::erase_if(*channels, [](const Channel& c) { return c.name == "normal"; });
-  if (dropped > 0)
-    job.note(
-        "normals of corners and faces do not fit other triangles and were left out; vkmesh normals makes new "
-        "ones");
-}
 
 Borders borders_of(const IndexedFaceSet& mesh, const OptimizeOptions& options) {
   Borders borders;
@@ -219,7 +209,7 @@ Result<void> run(Job& job, const OptimizeOptions& options) {
     VKMESH_TRY(Triangulated cut, triangulate(mesh));  // as the half-edges were
     mesh = std::move(cut.mesh);
   }
-  drop_normals(job, mesh);
+  VKMESH_CHECK(drop_normals(job, {&mesh.corner_channels, &mesh.face_channels}));
   const Borders borders = borders_of(mesh, options);
   std::string names;
   for (const WeightedSwapCost& cost : swaps.costs)

@@ -94,15 +94,12 @@ Channel mixed(const Channel& channel, std::span<const SurfacePoint> points, Corn
 /// The attributes of a surface while it is remeshed.
 class RemeshAttributes {
  public:
-  RemeshAttributes(Job& job, IndexedFaceSet& mesh, const HalfEdgeMesh& half_edges)
+  RemeshAttributes(IndexedFaceSet& mesh, const HalfEdgeMesh& half_edges)
       : points_(std::move(mesh.point_channels)),
         corners_(std::move(mesh.corner_channels)),
         faces_(std::move(mesh.face_channels)),
         corner_points_(half_edges.origins().begin(), half_edges.origins().end()) {
     mesh.point_channels = mesh.corner_channels = mesh.face_channels = {};
-    for (auto* channels : {&corners_, &faces_})
-      if (std::erase_if(*channels, [](const Channel& c) { return c.name == "normal"; }) > 0)
-        job.note("normals of faces and corners were left out; vkmesh normals makes new ones");
     std::vector<bool> is_seam(half_edges.half_edge_count(), false);
     for (const Channel& channel : corners_) find_seams(half_edges, channel, is_seam);
     for (const Channel& channel : faces_) {
@@ -193,7 +190,8 @@ Result<void> run(Job& job, const RemeshChoice& choice) {
       for (const std::uint32_t v : mesh.face(f)) marked.vertices.push_back(v);
     options.locked = marked.vertices;
   }
-  const RemeshAttributes attributes(job, mesh, half_edges);
+  VKMESH_CHECK(drop_normals(job, {&mesh.corner_channels, &mesh.face_channels}));
+  const RemeshAttributes attributes(mesh, half_edges);
   options.curves.edges = attributes.seams();
   VKMESH_TRY(Remeshed remeshed, job.timed("compute", [&] {
     return remesh(half_edges, mesh.points, options, job.progress("remeshing"));

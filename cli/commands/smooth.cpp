@@ -8,6 +8,7 @@
 #include <string>
 
 #include "commands.h"
+#include "job/channels.h"
 #include "passes/backend.h"
 
 namespace vkmesh::cli {
@@ -124,10 +125,7 @@ Result<void> run(Job& job, const SmoothOptions& options) {
                           " on average, " + brief(largest) + " at most");
 
   // Normals of the surface as it was would shade the new one wrongly.
-  for (auto* channels : {&mesh.point_channels, &mesh.corner_channels, &mesh.face_channels})
-    if (std::erase_if(*channels, [](const Channel& c) { return c.name == "normal"; }) > 0)
-      job.note(
-          "the input's normals do not fit the moved points and were left out; vkmesh normals makes new ones");
+  VKMESH_CHECK(drop_normals(job, {&mesh.point_channels, &mesh.corner_channels, &mesh.face_channels}));
   return job.write(mesh);
 }
 

@@ -158,7 +158,8 @@ Result<void> run(Job& job, const VoronoiChoice& choice) {
     for (const std::uint32_t k : diagram.neighbours_of(i)) edges += k == kInvalid || k > i ? 1 : 0;
   }
   const std::size_t empty = diagram.cell_count() - cells, duplicates = points.size() - diagram.cell_count();
-  if (input.face_count() > 0) job.note("the faces of the file were left out: only its points count");
+  if (input.face_count() > 0)
+    VKMESH_CHECK(job.note_dropped("faces", "the faces were left out: only the points count"));
   if (empty > 0)
     job.note(count_of(empty, "site") + " without a cell: all that is nearest to " +
              (empty == 1 ? "it" : "them") + " lies outside");

@@ -5,6 +5,8 @@
 #include <string>
 #include <variant>
 
+#include "job/common.h"
+
 namespace vkmesh::cli {
 namespace {
 
@@ -59,6 +61,15 @@ Result<Marked> find_marked(const IndexedFaceSet& mesh, const std::string& name) 
   if (of_points != nullptr) marked.vertices = not_zero(*of_points);
   if (of_faces != nullptr) marked.faces = not_zero(*of_faces);
   return marked;
+}
+
+Result<void> drop_normals(Job& job, std::initializer_list<std::vector<Channel>*> lists) {
+  std::size_t dropped = 0;
+  for (auto* channels : lists)
+    dropped += std::erase_if(*channels, [](const Channel& c) { return c.name == "normal"; });
+  if (dropped == 0) return {};
+  return job.note_dropped(
+      "normal", "normals do not fit the new surface and were left out; vkmesh normals makes new ones");
 }
 
 }  // namespace vkmesh::cli

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <string>
 #include <vector>
 
 #include <vkmesh/base/result.h>
@@ -11,6 +13,8 @@
 #include <vkmesh/mesh/indexed_face_set.h>
 
 namespace vkmesh::cli {
+
+class Job;
 
 /// Whether values between two of the channel's mean something: not so where they number things.
 [[nodiscard]] bool can_be_mixed(const Channel& channel);
@@ -31,5 +35,9 @@ struct Marked {
 };
 /// For --lock NAME. Errors: kUsage where neither points nor faces have a channel of this name.
 [[nodiscard]] Result<Marked> find_marked(const IndexedFaceSet& mesh, const std::string& name);
+
+/// Takes normals out of lists of channels, where they would not fit the new surface. Errors: those of
+/// Job::note_dropped.
+[[nodiscard]] Result<void> drop_normals(Job& job, std::initializer_list<std::vector<Channel>*> lists);
 
 }  // namespace vkmesh::cli

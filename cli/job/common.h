@@ -143,6 +143,10 @@ class Job {
   /// Tells of the differences between a file and its mesh, as --on-loss says. Errors: kUnsuitable where it
   /// says that a loss fails the run.
   [[nodiscard]] Result<void> note_differences(const std::string& file, const std::vector<FileNote>& notes);
+  /// The same of what the command itself does not keep of its input: the code is "dropped." and `what`.
+  [[nodiscard]] Result<void> note_dropped(const std::string& what, std::string sentence) {
+    return note_differences(options_.input, {{"dropped." + what, std::move(sentence)}});
+  }
   /// What is to be added to the points of what was read.
   [[nodiscard]] const DVec3& offset() const { return offset_; }
   /// How all files of the run are read: relative to the first's offset.

@@ -331,6 +331,38 @@ TEST_CASE("smooth leaves normals out that no longer fit, and says so") {
   CHECK(mesh_in(scratch.path("s.ply")).point_channels.empty());
 }
 
+TEST_CASE("What a command leaves out has a code, and --on-loss fail refuses it") {
+  const Scratch scratch;
+  const std::string in = scratch.file(
+                        "in.obj",
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 1\nvn 0 0 1\nvn 0 1 0\nvn 1 0 0\n"
+                        "f 1//1 3//1 2//1\nf 1//2 2//2 4//2\nf 2//3 3//3 4//3\nf 3//3 1//3 4//3\n"),
+                    out = scratch.path("out.ply");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands = {
+      {{"smooth", in, out, "--device", "cpu"}, "dropped.normal"},
+      {{"simplify", in, out, "--faces", "4"}, "dropped.normal"},
+      {{"optimize", in, out}, "dropped.normal"},
+      {{"remesh", in, out, "--edge-length", "1"}, "dropped.normal"},
+      {{"delaunay", in, out}, "dropped.heights"},
+      {{"delaunay", in, out, "--z"}, "dropped.faces"},
+      {{"voronoi", in, out}, "dropped.faces"}};
+  for (auto [arguments, code] : commands) {
+    CAPTURE(arguments);
+    arguments.insert(arguments.end(), {"--on-loss", "fail"});
+    const Outcome refused = vkmesh_run(arguments);
+    CHECK(refused.code == 4);
+    CHECK_THAT(refused.err, Contains("(dropped."));
+    CHECK_FALSE(std::filesystem::exists(out));
+    arguments.back() = "ignore";
+    arguments.push_back("--json");
+    const Outcome told = vkmesh_run(arguments);
+    REQUIRE(told.code == 0);
+    CHECK_THAT(told.json().at("losses").dump(), Contains(code));
+    CHECK_THAT(told.json().at("notes").dump(), !Contains("left out"));
+    std::filesystem::remove(out);
+  }
+}
+
 TEST_CASE("simplify reaches its target, and its counts are those of the file") {
   const Scratch scratch;
   const std::string in = scratch.file("in.off", off_of(icosphere(4)));

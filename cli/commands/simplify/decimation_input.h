@@ -51,7 +51,7 @@ class DecimationInput {
 
   /// What the choice says, with attributes and locks, which are borrowed from this.
   [[nodiscard]] DecimateOptions options() const;
-  /// Of a time limit that counts from when the input had been read.
+  /// What is left of a time limit that counts from when the input had been read.
   [[nodiscard]] std::optional<double> seconds_left(const std::optional<double>& limit) const;
 
   HalfEdgeMesh half_edges;

@@ -136,15 +136,18 @@ Result<SimplifyAttributes> SimplifyAttributes::of(Job& job, IndexedFaceSet& mesh
   for (Channel& channel : mesh.corner_channels) {
     std::optional<double> weight = weights.of(channel);
     if (weight == 0.0) {
-      job.note("the attribute " + channel.name +
-               " of corners was left out, and its seams with it: its weight is 0");
+      VKMESH_CHECK(job.note_dropped(channel.name,
+                                    "the attribute " + channel.name +
+                                        " of corners was left out, and its seams with it: its weight is 0"));
       continue;
     }
     if (!weight && can_be_mixed(channel) && channel.name != "normal") weight = kDefaultWeight;
     if (!weight) {
-      job.note("the attribute " + channel.name + " of corners was left out" +
-               (can_be_mixed(channel) ? ": --attribute " + channel.name + " keeps it, and its seams"
-                                      : ": its values can not be mixed"));
+      VKMESH_CHECK(job.note_dropped(
+          channel.name,
+          "the attribute " + channel.name + " of corners was left out" +
+              (can_be_mixed(channel) ? ": --attribute " + channel.name + " keeps it, and its seams"
+                                     : ": its values can not be mixed")));
       continue;
     }
     result.parts_.push_back({result.corner_channels_.size(), true, *weight, floats_of(channel)});

@@ -12,7 +12,7 @@ bool is_less(DVec2 p, DVec2 q) {
   return p.x != q.x ? p.x < q.x : p.y < q.y;
 }
 
-/// Of p in the triangle, as far as rounding tells.
+/// Barycentric coordinates of p in the triangle, as far as rounding tells.
 std::array<float, 3> weights_of(DVec2 p, const std::array<DVec2, 3>& corners) {
   std::array<double, 3> areas;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -25,7 +25,7 @@ std::array<float, 3> weights_of(DVec2 p, const std::array<DVec2, 3>& corners) {
           static_cast<float>(areas[2] / sum)};
 }
 
-/// Of p between a and b.
+/// The same of p between a and b.
 std::array<float, 3> weights_of(DVec2 p, DVec2 a, DVec2 b) {
   const DVec2 whole = b - a, part = p - a;
   const double share = std::fabs(whole.x) > std::fabs(whole.y) ? part.x / whole.x : part.y / whole.y;

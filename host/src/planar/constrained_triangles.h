@@ -34,7 +34,7 @@ struct EndOfWalk {
 
 class ConstrainedTriangles {
  public:
-  /// Of a mesh that delaunay() made, with the places of its vertices. What comes of it depends on no more.
+  /// Takes a mesh that delaunay() made, with the places of its vertices. Results depend on nothing else.
   ConstrainedTriangles(const HalfEdgeMesh& mesh, std::vector<DVec2> places);
 
   [[nodiscard]] const std::vector<DVec2>& places() const { return places_; }
@@ -117,7 +117,8 @@ class ConstrainedTriangles {
     std::uint8_t kind;
     bool is_inner;  // the segment crosses the triangles on both of its sides
   };
-  /// Of what is left of a polygon, with the edge that leads there: the number of a side, or a half-edge.
+  /// A corner of what is left of a polygon, with the edge that leads there: the number of a side, or a
+  /// half-edge.
   struct Corner {
     std::uint32_t vertex, edge;
     bool is_side;
@@ -144,7 +145,7 @@ class ConstrainedTriangles {
   std::unordered_map<std::uint64_t, std::uint32_t> splits_;  // of segments: a vertex between their ends
   std::size_t crossings_ = 0;
 
-  // Of the segment that is being inserted.
+  // What the segment that is being inserted needs.
   std::vector<VertexPair> waiting_;
   std::vector<std::uint32_t> crossed_, left_, right_;  // triangles; half-edges of them beside the segment
   std::vector<std::uint32_t> suspects_;                // half-edges that need not be Delaunay

@@ -71,7 +71,7 @@ struct UnrefinedTriangle {
 struct ConstrainedTriangulation {
   /// Triangles that turn counter-clockwise. Vertices that are in none of them are isolated.
   HalfEdgeMesh mesh;
-  /// Of the vertices. The first are those of delaunay(); those at the end were added.
+  /// Places of the vertices. The first are those of delaunay(); those at the end were added.
   std::vector<DVec2> positions;
   /// For each vertex the first of the points that lie there; kInvalid for vertices that were added.
   std::vector<std::uint32_t> point_of_vertex;

@@ -737,8 +737,8 @@ class SceneReader {
     return std::pair(name.substr(0, digits - 4), static_cast<std::size_t>(std::stoul(name.substr(digits))));
   }
 
-  /// Of nodes beside each other those that show the level of detail that is asked for, or the coarsest that
-  /// there is.
+  /// Those of several nodes beside each other that show the level of detail that is asked for, or the
+  /// coarsest that there is.
   std::vector<int> at_level(const std::vector<int>& nodes) {
     const auto node_of = [&](int index) -> const tinygltf::Node* {
       return index >= 0 && static_cast<std::size_t>(index) < model_.nodes.size()
