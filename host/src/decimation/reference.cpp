@@ -23,6 +23,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "decimation/reference_target.h"
+
 namespace vkmesh::detail {
 namespace {
 
@@ -30,17 +32,13 @@ using Vertex = std::uint32_t;
 using Triangle = std::array<Vertex, 3>;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-/// The last neighbour of each boundary vertex, so that the link condition needs no rule for boundaries.
-constexpr Vertex kGhost = kInvalid;
+constexpr Vertex kGhost = kInvalid;   // the last neighbour at boundaries: the link condition needs no rule
 constexpr double kDegenerate = 1e-6;  // of its squared sides: a triangle of less area has no reliable normal
 constexpr double kSliver = 1e-4;      // the same: in a hole, one of less does not take the place of one
 constexpr double kThinner = 10;       // that was so many times as wide
 constexpr double kEar = 0.8660254037844386;  // cosine of the angle by which an ear may turn
 constexpr double kSteepest = 0.05;  // cosine between a face in a hole and the direction it is seen along
 constexpr double kAgainst = -0.5;   // cosine of the angle at which neighbours stand against each other
-
-/// A part of more vertices is not decimated to the end to see what is left of it.
-constexpr std::size_t kMostVertices = 1000;
 
 bool contains(const auto& range, Vertex v) {
   return std::ranges::find(range, v) != std::ranges::end(range);
@@ -263,7 +261,8 @@ struct Step {
 class Decimation {
  public:
   Decimation(const TriangleSurface& surface, const DecimateOptions& options)
-      : options_(options),
+      : surface_(surface),
+        options_(options),
         removes_vertices_(options.operation == DecimateOperation::kVertexRemoval),
         cos_deviation_(std::cos(options.bounds.normal_deviation)),
         next_(surface.points.size()),
@@ -283,10 +282,9 @@ class Decimation {
     const std::size_t target = std::max(options_.target.faces.value_or(0), static_cast<std::size_t>(share));
     std::set<Vertex> used;
     for (const Triangle& face : faces()) used.insert(face.begin(), face.end());
-    std::size_t vertices = used.size();
-    const std::size_t least = std::max(options_.target.vertices.value_or(0), least_vertices(target, used));
+    const std::size_t least = least_vertices_by_reference(surface_, target, options_);
     price_around(used);
-    while (!queue_.empty() && faces_left_ > target && vertices > least) {
+    while (!queue_.empty() && faces_left_ > target && used.size() > least + result_.steps) {
       const auto [cost, p, q, version] = queue_.top();
       queue_.pop();
       if (version != version_[p] + version_[q]) continue;  // priced anew since
@@ -295,7 +293,6 @@ class Decimation {
         if (step.cost < kNone) queue_.emplace(step.cost, p, q, version);
       } else if (is_legal(step, p, q)) {
         carry_out(step);
-        --vertices;
       }
     }
     result_.faces = faces();
@@ -323,64 +320,6 @@ class Decimation {
       for (const auto& [a, b] : next_[v])
         if (v < a && v < b) result.push_back({v, a, b});
     return result;
-  }
-  /// A target that what is held puts out of reach is not bought with the rest: of that an eighth of the share
-  /// that was asked for is left.
-  std::size_t least_vertices(std::size_t faces, const std::set<Vertex>& used) const {
-    const auto all = static_cast<double>(used.size());
-    const double asked = static_cast<double>(options_.target.vertices.value_or(0)) / all,
-                 share = std::min(
-                     1.0, std::max(asked, static_cast<double>(faces) / static_cast<double>(faces_left_)));
-    if (options_.target.force || share == 0) return 0;
-    const auto held = static_cast<double>(std::min(held_vertices(used), used.size()));
-    const double kept = share * (all - held) / 8;
-    return kept >= 1 ? static_cast<std::size_t>(held + kept) : 0;
-  }
-  /// What is locked, or needed by spheres, of which there are as many as Euler's characteristic tells; of
-  /// several small parts what is left of each alone.
-  std::size_t held_vertices(const std::set<Vertex>& used) const {
-    const auto locked_of = [&](const std::set<Vertex>& part) {
-      return static_cast<std::size_t>(std::ranges::count_if(part, [&](Vertex v) { return locked_[v]; }));
-    };
-    std::size_t ends = 0;  // of edges, each edge at either vertex
-    for (const Vertex v : used)
-      for (const Vertex w : ring(v)) ends += w != kGhost ? 1 : 0;
-    const std::size_t edges = ends / 2, others = used.size() + faces_left_;
-    if (others <= edges + 2) return std::max(locked_of(used), 2 * (std::max(others, edges) - edges));
-    std::size_t held = 0;
-    for (std::set<Vertex> rest = used; !rest.empty();) {
-      std::set<Vertex> part;
-      for (std::vector<Vertex> next = {*rest.begin()}; !next.empty();) {
-        const Vertex v = next.back();
-        next.pop_back();
-        if (v == kGhost || !part.insert(v).second) continue;
-        rest.erase(v);
-        const std::vector<Vertex> around = ring(v);
-        next.insert(next.end(), around.begin(), around.end());
-      }
-      held += part.size() > kMostVertices ? std::max<std::size_t>(locked_of(part), 4) : left_alone(part);
-    }
-    return held;
-  }
-  std::size_t left_alone(const std::set<Vertex>& part) const {
-    DecimateOptions alone = options_;
-    alone.target = {};
-    alone.locked.vertices.clear();
-    std::map<Vertex, Vertex> number;
-    std::vector<Vec3> points;
-    std::vector<std::uint32_t> corners;
-    for (const Vertex v : part) {
-      number[v] = static_cast<Vertex>(points.size());
-      if (locked_[v]) alone.locked.vertices.push_back(number[v]);
-      points.emplace_back(at(v));
-    }
-    for (const Triangle& face : faces())
-      if (part.contains(face[0]))
-        for (const Vertex v : face) corners.push_back(number.at(v));
-    std::set<Vertex> left;
-    for (const Triangle& face : Decimation({points, corners}, alone).run().faces)
-      left.insert(face.begin(), face.end());
-    return left.size();
   }
   const DVec3& at(Vertex v) const { return result_.positions[v]; }
   std::size_t faces_at_edge(Vertex p, Vertex q) const { return next_[p].count(q) + next_[q].count(p); }
@@ -429,9 +368,8 @@ class Decimation {
     const bool is_free = options_.operation == DecimateOperation::kEdgeCollapse && !locked_[p] && !locked_[q];
     const bool keeps_q = locked_[q] || (!locked_[p] && sum.at(at(q)) <= sum.at(at(p)));
     const auto [gone, kept] = keeps_q ? std::pair(p, q) : std::pair(q, p);
-    const DVec3 middle = 0.5 * (at(p) + at(q));
-    return collapse(gone, kept, sum,
-                    is_free ? sum.minimum_near(middle, 2 * glm::distance(at(p), at(q))) : at(kept));
+    const double twice = 2 * glm::distance(at(p), at(q));
+    return collapse(gone, kept, sum, is_free ? sum.minimum_near(0.5 * (at(p) + at(q)), twice) : at(kept));
   }
   Step collapse(Vertex gone, Vertex kept, const Quadric& quadric, const DVec3& position) const {
     Step step{quadric.at(position), gone, kept, position, {{kept, 1.0}}, {}, {}, true};
@@ -540,6 +478,7 @@ class Decimation {
     price_around(changed);
   }
 
+  const TriangleSurface& surface_;
   const DecimateOptions& options_;
   bool removes_vertices_;
   double cos_deviation_;

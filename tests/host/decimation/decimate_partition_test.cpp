@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <tbb/task_arena.h>
 
 #include "decimation/cost/edge_batch.h"
 #include "decimation/decimate_support.h"
@@ -212,6 +213,41 @@ struct Partitioned {
 using OptimalPartitioned = detail::PartitionedCollapses<detail::OptimalPlacement, detail::LazyQueue, false>;
 
 }  // namespace
+
+TEST_CASE("partitions see the corners that collapses brought to a face", "[decimate]") {
+  // Columns of vertices: the first 17 are the first half of the vertices, and faces of one block have corners
+  // in no other. Then the last of these columns collapses into the next one, along its edges from below.
+  constexpr std::uint32_t kColumns = 34, kRows = 65;
+  IndexedFaceSet strip;
+  for (std::uint32_t x = 0; x < kColumns; ++x)
+    for (std::uint32_t y = 0; y < kRows; ++y)
+      strip.points.emplace_back(8 * (static_cast<float>(x) - 16.5f), static_cast<float>(y), 0);
+  for (std::uint32_t x = 0; x + 1 < kColumns; ++x)
+    for (std::uint32_t y = 0; y + 1 < kRows; ++y) {
+      const std::uint32_t a = x * kRows + y, b = a + kRows;
+      for (const std::uint32_t v : {a, b, b + 1, a, b + 1, a + 1}) strip.corners.push_back(v);
+    }
+  tbb::task_arena two(2);
+  two.execute([&] {
+    CollapseMesh mesh = mesh_of(strip);
+    for (std::uint32_t y = 0; y < kRows; ++y) {
+      const std::uint32_t p = 16 * kRows + y, q = p + kRows;
+      std::uint32_t h = mesh.vertices[p].leading;
+      while (mesh.target(h) != q) h = mesh.around_vertex(h);
+      REQUIRE(link_condition(mesh, p, q));
+      std::vector<std::uint32_t> others;
+      for (std::uint32_t out = mesh.around_vertex(h); out != h; out = mesh.around_vertex(out))
+        others.push_back(out);
+      mesh.collapse(h, others);
+    }
+    const std::vector<std::uint8_t> labels = detail::partition_kd(mesh, 2);
+    for (std::uint32_t h = 0; h < mesh.half_edge_bound(); h += 4)
+      if (mesh.alive(h)) detail::tag_interface(labels, mesh.face(h));
+    check(mesh, labels);
+    CHECK(labels[15 * kRows] == 0);
+    CHECK(labels[17 * kRows] == 1);
+  });
+}
 
 TEST_CASE(
     "partitions of a surface are compact, of one size, and stay apart through collapses on the interface",

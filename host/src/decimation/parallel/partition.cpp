@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <atomic>
 #include <cstddef>
 #include <span>
 
@@ -94,18 +94,20 @@ std::vector<std::uint8_t> partition_kd(CollapseMesh& mesh, std::size_t partition
   });
   std::vector<std::uint8_t> labels(partition.size());
   for (std::size_t v = 0; v < partition.size(); ++v) labels[v] = partition[v] | Partition::kInner;
-  mesh.vertex_ranges().for_each([&](const VertexRanges::Range& range) {
-    range.for_each_face([&](std::uint32_t f) {
+  // Threads may write the same byte, and then the same value: collapses may have brought any corners to a
+  // face.
+  parallel_ranges(mesh.face_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
       // Branchless: whether a face is alive is unpredictable. One that is gone has no first corner.
-      const CollapseMesh::Face& face = mesh.face(4 * f);
+      const CollapseMesh::Face& face = mesh.face(static_cast<std::uint32_t>(4 * f));
       prefetch_stream(&face);
       const std::uint32_t a = std::min(face.origin[0], mesh.apex()), b = face.origin[1], c = face.origin[2];
       const auto differ =
           static_cast<std::uint32_t>((partition[a] ^ partition[b]) | (partition[b] ^ partition[c]));
-      if ((differ & (0u - static_cast<std::uint32_t>(face.alive()))) == 0) return;
+      if ((differ & (0u - static_cast<std::uint32_t>(face.alive()))) == 0) continue;
       for (const std::uint32_t v : {a, b, c})
-        if (range.has(v)) labels[v] = partition[v];
-    });
+        std::atomic_ref(labels[v]).store(partition[v], std::memory_order_relaxed);
+    }
   });
   return labels;
 }
