@@ -16,6 +16,7 @@
 #include <vkmesh/planar/constrained_delaunay.h>
 
 #include "check.h"
+#include "near_segment.h"
 #include "random_manifold.h"
 
 namespace vkmesh::fuzz {
@@ -63,17 +64,6 @@ void check_triangles(const ConstrainedTriangulation& of, const Edges& kept) {
 /// Edges of constraints from a to b, along the segment.
 bool has_chain(const ConstrainedTriangulation& of, const Edges& kept, std::uint32_t a, std::uint32_t b) {
   const auto& p = of.positions;
-  const DVec2 from = p[a], to = p[b];
-  const double size = std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(to.x), std::fabs(to.y)});
-  const double length = std::hypot(to.x / size - from.x / size, to.y / size - from.y / size);
-  // Beside the segment, and between its ends, but for rounding; among the least numbers that is all there is.
-  const auto is_near = [&](std::uint32_t v) {
-    const DVec2 whole = to / size - from / size, part = p[v] / size - from / size;
-    const double along = (whole.x * part.x + whole.y * part.y) / length;
-    return v == a || v == b || size < 0x1p-900 ||
-           (std::fabs(whole.x * part.y - whole.y * part.x) <= 1e-11 * length && along >= -1e-11 &&
-            along <= length + 1e-11);
-  };
   std::set<std::uint32_t> reached = {a};
   std::vector<std::uint32_t> waiting = {a};
   while (!waiting.empty()) {
@@ -82,7 +72,7 @@ bool has_chain(const ConstrainedTriangulation& of, const Edges& kept, std::uint3
     if (v == b) return true;
     for (auto e = kept.lower_bound({v, 0}); e != kept.end() && (*e)[0] == v; ++e) {
       const std::uint32_t w = (*e)[1];
-      if (is_near(w) && reached.insert(w).second) waiting.push_back(w);
+      if (is_near_segment(p[w], p[a], p[b]) && reached.insert(w).second) waiting.push_back(w);
     }
   }
   return false;

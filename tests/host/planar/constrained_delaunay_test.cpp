@@ -13,6 +13,7 @@
 #include <vkmesh/planar/constrained_delaunay.h>
 #include <vkmesh/planar/delaunay.h>
 
+#include "fuzz/near_segment.h"
 #include "host/planar/constrained_input.h"
 
 using namespace vkmesh;
@@ -93,17 +94,6 @@ bool has_chain(const ConstrainedTriangulation& of, const Edges& kept, std::uint3
   const auto& p = of.positions;
   std::set<std::uint32_t> reached = {a};
   std::vector<std::uint32_t> waiting = {a};
-  const DVec2 from = p[a], to = p[b];
-  const double size = std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(to.x), std::fabs(to.y)});
-  const double length = std::hypot(to.x / size - from.x / size, to.y / size - from.y / size);
-  // Beside the segment, and between its ends, but for rounding; among the least numbers that is all there is.
-  const auto is_near = [&](std::uint32_t v) {
-    const DVec2 whole = to / size - from / size, part = p[v] / size - from / size;
-    const double along = (whole.x * part.x + whole.y * part.y) / length;
-    return v == a || v == b || size < 0x1p-900 ||
-           (std::fabs(whole.x * part.y - whole.y * part.x) <= 1e-11 * length && along >= -1e-11 &&
-            along <= length + 1e-11);
-  };
   while (!waiting.empty()) {
     const std::uint32_t v = waiting.back();
     waiting.pop_back();
@@ -111,7 +101,7 @@ bool has_chain(const ConstrainedTriangulation& of, const Edges& kept, std::uint3
     for (const auto& [q, r] : kept) {
       if (q != v && r != v) continue;
       const std::uint32_t w = q == v ? r : q;
-      if (is_near(w) && reached.insert(w).second) waiting.push_back(w);
+      if (fuzz::is_near_segment(p[w], p[a], p[b]) && reached.insert(w).second) waiting.push_back(w);
     }
   }
   return false;

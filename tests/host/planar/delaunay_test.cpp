@@ -17,6 +17,8 @@
 #include <vkmesh/planar/delaunay.h>
 #include <vkmesh/repair/consolidate.h>
 
+#include "host/planar/random_points.h"
+
 using namespace vkmesh;
 
 namespace {
@@ -24,19 +26,7 @@ namespace {
 using Points = std::vector<DVec2>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : random_(seed) {}
-  double unit() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  std::size_t below(std::size_t n) { return random_() % n; }
-  template <class T>
-  void shuffle(std::vector<T>& values) {
-    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
-  }
-
- private:
-  std::mt19937_64 random_;
-};
+using Random = test::RandomPoints;
 
 /// By name: random, degenerate and cocircular points, n of each.
 std::map<std::string, Points> families(std::size_t n) {

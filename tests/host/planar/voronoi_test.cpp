@@ -18,6 +18,7 @@
 #include <vkmesh/planar/voronoi.h>
 #include <vkmesh/repair/consolidate.h>
 
+#include "host/planar/random_points.h"
 #include "math/circumcentre.h"
 
 using namespace vkmesh;
@@ -26,24 +27,7 @@ namespace {
 
 using Points = std::vector<DVec2>;
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : random_(seed) {}
-  double unit() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  std::size_t below(std::size_t n) { return random_() % n; }
-  double whole(std::size_t n) { return static_cast<double>(below(n)); }
-  DVec2 whole_point(std::size_t n) {
-    const double x = whole(n);
-    return {x, whole(n)};
-  }
-  template <class T>
-  void shuffle(std::vector<T>& values) {
-    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
-  }
-
- private:
-  std::mt19937_64 random_;
-};
+using Random = test::RandomPoints;
 
 std::map<std::string, Points> families(std::size_t n) {
   std::map<std::string, Points> all;
